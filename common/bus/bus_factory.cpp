@@ -9,6 +9,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #include "common/bus/vendors.hpp"
+#include "common/msg/word_list.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -69,6 +70,10 @@ const Vendor& vendor_of(const BusOptions& options) {
 
 std::string default_vendor() {
   return kVendors[0].name;
+}
+
+std::string vendor_names() {
+  return msg::word_list(dds_vendors());
 }
 
 std::vector<std::string> available_vendors() {

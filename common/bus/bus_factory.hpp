@@ -23,10 +23,13 @@ struct NetworkOptions {
 
   void bind(auto& binder) {
     binder.field("loopback_only", loopback_only, "false: also the host's network interfaces");
-    binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, none: all (--interface)");
+    binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, e.g. eth0; none: all")
+        .option("--interface", "Network");
     binder.field("multicast", multicast, "false: only peers and the discovery server are asked");
-    binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT (--peers)");
-    binder.field("discovery_server", discovery_server, "HOST:PORT of a Fast DDS Discovery Server (--discovery-server)");
+    binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT, e.g. 192.168.1.20,gpubox")
+        .option("--peers", "Network");
+    binder.field("discovery_server", discovery_server, "HOST:PORT of a Fast DDS Discovery Server")
+        .option("--discovery-server", "Network");
     binder.field("max_datagram_bytes", max_datagram_bytes, {512, 65000}, "DDS cuts larger samples; 1400 on a network");
   }
 };
@@ -40,6 +43,8 @@ struct SecurityOptions {
 
 /// Fast DDS where it is built in, else Cyclone DDS.
 std::string default_vendor();
+/// "fastdds or cyclonedds": those that are built in.
+std::string vendor_names();
 
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
@@ -58,9 +63,10 @@ struct BusOptions {
   std::function<void(const std::string& problem)> on_problem = {};
 
   void bind(auto& binder) {
-    binder.field("vendor", vendor, "DDS implementation (--dds, RTD_DDS)");
-    binder.field("domain", domain, {0, 232}, "DDS domain (--domain, ROS_DOMAIN_ID)");
-    binder.field("robot", robot, "name of the robot: its topics are below it, its frames too (--robot)");
+    binder.field("vendor", vendor, "DDS implementation, else RTD_DDS: " + vendor_names()).option("--dds", "Network");
+    binder.field("domain", domain, {0, 232}, "DDS domain, else ROS_DOMAIN_ID").option("--domain", "Network");
+    binder.field("robot", robot, "name of the robot, where several share a domain: its topics and frames are below it")
+        .option("--robot", "Robot");
     binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
     binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
     binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");

@@ -26,6 +26,15 @@ bool is_file_name(const std::string& profile) {
   return profile.find('/') != std::string::npos || profile.ends_with(".yaml") || profile.ends_with(".yml");
 }
 
+/// Once: it belongs to both groups of options.
+void add_profile_option(CLI::App& app, ConfigSources& sources) {
+  constexpr const char* kFlag = "--profile";
+  if (app.get_option_no_throw(kFlag) != nullptr) return;
+  app.add_option(kFlag, sources.profile,
+                 fmt::format("Network profile: {}, or a YAML file (default: localhost)", profile_names()))
+      ->group("Network");
+}
+
 void load_profile(ConfigBinder& binder, const std::string& profile) {
   if (profile.empty()) return;
   if (const auto known = built_in_profiles().find(profile); known != built_in_profiles().end())
@@ -35,13 +44,6 @@ void load_profile(ConfigBinder& binder, const std::string& profile) {
     return binder.load_text({std::istreambuf_iterator<char>(file), {}}, profile, config_sections());
   throw ConfigError(fmt::format("--profile {}: {}, there are {} (or a YAML file)", profile,
                                 is_file_name(profile) ? "no such file" : "no such profile", profile_names()));
-}
-
-/// ["a", "b:7410"]: quoted, for YAML reads colons.
-std::string yaml_list(const std::vector<std::string>& values) {
-  std::vector<std::string> quoted;
-  for (const std::string& value : values) quoted.push_back(fmt::format("\"{}\"", value));
-  return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
 /// ROS 2 compares ROS_SECURITY_ENABLE exactly so.
@@ -72,68 +74,45 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   return options;
 }
 
-void add_bus_options(CLI::App& app, BusArguments& arguments) {
-  app.add_option("--profile", arguments.profile,
-                 fmt::format("Network profile: {}, or a YAML file (default: localhost)", profile_names()));
-  app.add_option("--peers", arguments.peers, "Hosts to ask directly, e.g. 192.168.1.20,gpubox (bus.network.peers)")
-      ->delimiter(',');
-  app.add_option("--interface", arguments.interfaces,
-                 "Network interfaces to use, e.g. eth0 (bus.network.interfaces; default: all)")
-      ->delimiter(',');
-  app.add_option("--discovery-server", arguments.discovery_server,
-                 "HOST:PORT of a Fast DDS Discovery Server (bus.network.discovery_server)");
-  app.add_option("--dds", arguments.vendor,
-                 fmt::format("DDS implementation: {} (RTD_DDS; default: {})", fmt::join(bus::dds_vendors(), " or "),
-                             bus::default_vendor()));
-  app.add_option("--domain", arguments.domain, "DDS domain 0..232 (ROS_DOMAIN_ID)");
-  app.add_option("--robot", arguments.robot,
-                 "Name of the robot, where several share a domain: its topics and frames are below it (bus.robot)");
-  app.add_flag("--secure", arguments.secure,
-               "DDS-Security: only processes with keys of the keystore take part (bus.security.enabled)");
-  app.add_option("--keystore", arguments.keystore,
-                 "Keystore of 'rtd keystore create', with --secure (RTD_KEYSTORE, ROS_SECURITY_KEYSTORE)");
+void add_source_options(CLI::App& app, ConfigSources& sources) {
+  app.add_option("--config", sources.file, "YAML file with a section per service");
+  app.add_option("--set", sources.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
+  add_profile_option(app, sources);
 }
 
-void load_config(ConfigBinder& binder, const BusArguments& arguments, const ConfigSources& sources) {
-  load_profile(binder, arguments.profile);
-  apply_environment(binder);
-  if (!sources.file.empty()) binder.load_file(sources.file, config_sections());
-  for (const std::string& assignment : sources.overrides) binder.set(assignment, config_sections());
-  if (!arguments.peers.empty()) binder.set("bus.network.peers", yaml_list(arguments.peers), "--peers");
-  if (!arguments.interfaces.empty())
-    binder.set("bus.network.interfaces", yaml_list(arguments.interfaces), "--interface");
-  if (!arguments.discovery_server.empty())
-    binder.set("bus.network.discovery_server", "\"" + arguments.discovery_server + "\"", "--discovery-server");
-  if (!arguments.vendor.empty()) binder.set("bus.vendor", arguments.vendor, "--dds");
-  if (arguments.domain >= 0) binder.set("bus.domain", std::to_string(arguments.domain), "--domain");
-  if (!arguments.robot.empty()) binder.set("bus.robot", "\"" + arguments.robot + "\"", "--robot");
-  if (!arguments.keystore.empty()) binder.set("bus.security.keystore", "\"" + arguments.keystore + "\"", "--keystore");
-  if (arguments.secure || !arguments.keystore.empty()) binder.set("bus.security.enabled", "true", "--secure");
-}
-
-std::vector<std::string> to_command_line(const BusArguments& arguments) {
-  std::vector<std::string> line;
-  const auto add = [&line](const char* option, const std::string& value) {
-    if (!value.empty()) line.insert(line.end(), {option, value});
-  };
-  add("--profile", arguments.profile);
-  add("--peers", fmt::format("{}", fmt::join(arguments.peers, ",")));
-  add("--interface", fmt::format("{}", fmt::join(arguments.interfaces, ",")));
-  add("--discovery-server", arguments.discovery_server);
-  add("--dds", arguments.vendor);
-  if (arguments.domain >= 0) add("--domain", std::to_string(arguments.domain));
-  add("--robot", arguments.robot);
-  if (arguments.secure) line.emplace_back("--secure");
-  add("--keystore", arguments.keystore);
-  return line;
-}
-
-bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSources& sources,
-                                 const std::string& participant_name) {
+void add_bus_options(CLI::App& app, ConfigSources& sources) {
   BusConfig config;
   ConfigBinder binder;
   binder.section("bus", config);
-  load_config(binder, arguments, sources);
+  add_profile_option(app, sources);
+  binder.add_options(app, sources.given);
+}
+
+void load_config(ConfigBinder& binder, const ConfigSources& sources) {
+  load_profile(binder, sources.profile);
+  apply_environment(binder);
+  if (!sources.file.empty()) binder.load_file(sources.file, config_sections());
+  for (const std::string& assignment : sources.overrides) binder.set(assignment, config_sections());
+  for (const GivenOption& option : sources.given) {
+    binder.set(option);
+    if (option.key == "bus.security.keystore") binder.set("bus.security.enabled", "true", option.flag);
+  }
+}
+
+std::vector<std::string> to_command_line(const ConfigSources& sources) {
+  std::vector<std::string> line;
+  if (!sources.profile.empty()) line.insert(line.end(), {"--profile", sources.profile});
+  if (!sources.file.empty()) line.insert(line.end(), {"--config", sources.file});
+  for (const std::string& assignment : sources.overrides) line.insert(line.end(), {"--set", assignment});
+  for (const std::string& word : to_command_line(sources.given, "bus")) line.push_back(word);
+  return line;
+}
+
+bus::BusOptions load_bus_options(const ConfigSources& sources, const std::string& participant_name) {
+  BusConfig config;
+  ConfigBinder binder;
+  binder.section("bus", config);
+  load_config(binder, sources);
   return to_bus_options(config, participant_name);
 }
 

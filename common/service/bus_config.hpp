@@ -21,10 +21,13 @@ struct SecurityConfig {
   std::string keystore, enclave;
 
   void bind(auto& binder) {
-    binder.field("enabled", enabled, "DDS-Security: only processes with keys of the keystore take part (--secure)");
-    binder.field("keystore", keystore,
-                 "folder of 'rtd keystore create' (--keystore, RTD_KEYSTORE, ROS_SECURITY_KEYSTORE), default "
-                 "~/.config/rtd/keystore");
+    binder.field("enabled", enabled, "DDS-Security: only processes with keys of the keystore take part")
+        .option("--secure", "Security");
+    binder
+        .field("keystore", keystore,
+               "folder of 'rtd keystore create', means --secure; else RTD_KEYSTORE, ROS_SECURITY_KEYSTORE, "
+               "~/.config/rtd/keystore")
+        .option("--keystore", "Security");
     binder.field("enclave", enclave, "whose keys: a path below enclaves/, default /rtd/ and the service's name");
   }
 };
@@ -48,34 +51,25 @@ const std::vector<std::string>& config_sections();
 /// Text of config/profiles/<name>.yaml by name; compiled in, so that a bare executable knows them.
 const std::map<std::string, std::string>& built_in_profiles();
 
-/// How a process joins the bus, as given on the command line: the same options for every service and `rtd run`.
-/// Empty and -1: not given.
-struct BusArguments {
-  std::string profile;  ///< name of a built-in profile or a YAML file
-  std::vector<std::string> peers, interfaces;
-  std::string discovery_server;
-  std::string vendor;
-  int domain = -1;
-  std::string robot;
-  bool secure = false;
-  std::string keystore;  ///< names the keystore and means --secure
-};
-
-void add_bus_options(CLI::App& app, BusArguments& arguments);
-/// The command line that gives another process the same arguments.
-std::vector<std::string> to_command_line(const BusArguments& arguments);
-
-/// Where the values of a configuration come from, beside the command line's own options.
+/// Where the values of a configuration come from.
 struct ConfigSources {
+  std::string profile;                 ///< --profile: name of a built-in network profile or a YAML file
   std::string file;                    ///< --config
   std::vector<std::string> overrides;  ///< --set
+  std::vector<GivenOption> given;      ///< options of the command line that are keys
 };
+
+/// --config, --set and --profile.
+void add_source_options(CLI::App& app, ConfigSources& sources);
+/// --profile and the options of section `bus`: how a process joins the bus.
+void add_bus_options(CLI::App& app, ConfigSources& sources);
+/// The command line that gives another process the same profile, file, --set and options of section `bus`.
+std::vector<std::string> to_command_line(const ConfigSources& sources);
 
 /// In rising priority: defaults, profile, environment, file, --set, own options. The binder needs the section `bus`.
 /// Throws ConfigError, for an unknown profile with the names of the known ones.
-void load_config(ConfigBinder& binder, const BusArguments& arguments, const ConfigSources& sources);
-/// For a process that reads no other section than `bus`.
-bus::BusOptions load_bus_options(const BusArguments& arguments, const ConfigSources& sources,
-                                 const std::string& participant_name);
+void load_config(ConfigBinder& binder, const ConfigSources& sources);
+/// For a process that reads no other section than `bus`; other options are passed over.
+bus::BusOptions load_bus_options(const ConfigSources& sources, const std::string& participant_name);
 
 }  // namespace rtd::service

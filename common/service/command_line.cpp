@@ -15,6 +15,8 @@
 #include <ctime>
 #include <filesystem>
 #include <iostream>
+#include <memory>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -28,7 +30,34 @@ namespace {
 constexpr std::chrono::milliseconds kRewriteEvery{200}, kRepeatEvery{10000};
 constexpr std::size_t kBarCells = 20;
 
+/// Lines of at most 100 characters; what does not fit continues in the column of the descriptions.
+class WrappedHelp final : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty() && (text.empty() || text.ends_with("\n\n"))) continue;
+      while (line.size() > kColumns) {
+        const std::size_t end = line.rfind(' ', kColumns);
+        if (end == std::string::npos || end <= get_column_width()) break;
+        text += line.substr(0, end) + '\n';
+        line = std::string(line.front() == ' ' ? get_column_width() : 0, ' ') + line.substr(end + 1);
+      }
+      text += line + '\n';
+    }
+    return text;
+  }
+
+ private:
+  static constexpr std::size_t kColumns = 100;
+};
+
 }  // namespace
+
+void wrap_help(CLI::App& app) {
+  app.formatter(std::make_shared<WrappedHelp>());
+}
 
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
   hold_standard_streams();

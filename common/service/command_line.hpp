@@ -25,6 +25,9 @@ namespace rtd::service {
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
 
+/// Gives the help of `app` lines of at most 100 characters. Call it before subcommands are added.
+void wrap_help(CLI::App& app);
+
 /// Starts this program again with an environment variable that a library reads while it is loaded, before main(). Does
 /// nothing when the variable is set. Returns without it when the program cannot be started again.
 void restart_with(const char* variable, const char* value, char** argv);

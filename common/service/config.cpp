@@ -3,9 +3,12 @@
 #include "common/service/config.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <yaml-cpp/yaml.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -19,9 +22,13 @@ namespace rtd::service {
 
 struct ConfigBinder::Setting {
   std::string key, help;
-  std::string wanted;                                 ///< "a number from 1 to 5"
-  std::function<bool(const std::string& yaml)> read;  ///< false: this is not what is wanted
+  std::string wanted;                                               ///< "a number from 1 to 5"
+  std::function<bool(const std::string& yaml)> read;                ///< false: this is not what is wanted
+  std::function<bool(const std::vector<std::string>& words)> take;  ///< the same for words of a command line
   std::function<std::string()> print;
+  std::string type = {};               ///< of its value, as help shows it: "INT"
+  std::string flags = {}, group = {};  ///< of its option; "": none
+  bool is_switch = false, is_list = false;
 };
 
 namespace {
@@ -65,6 +72,12 @@ std::string print_value(const T& value) {
 
 std::string section_of(const std::string& key) {
   return key.substr(0, key.find('.'));
+}
+
+/// How many sections two keys have in common: 2 of "slam.map.load" and "slam.map.save".
+std::ptrdiff_t common_sections(const std::string& a, const std::string& b) {
+  const auto [end, ignored] = std::mismatch(a.begin(), a.end(), b.begin(), b.end());
+  return std::count(a.begin(), end, '.');
 }
 
 /// Walks through the sections of a file. Anchors let a short text hold itself, or itself many times: both are bounded.
@@ -121,63 +134,100 @@ ConfigBinder::ConfigBinder() = default;
 ConfigBinder::~ConfigBinder() = default;
 
 template <class T, class Allowed>
-void ConfigBinder::add(std::string_view key, T& value, std::string wanted, Allowed allowed, std::string_view help) {
-  const auto read = [&value, allowed = std::move(allowed)](const std::string& yaml) {
+ConfigBinder::Bound ConfigBinder::add(std::string_view key, T& value, std::string wanted, Allowed allowed,
+                                      std::string_view help) {
+  const auto assign = [&value, allowed = std::move(allowed)](T parsed) {
+    if (!allowed(parsed)) return false;
+    value = std::move(parsed);
+    return true;
+  };
+  const auto read = [assign](const std::string& yaml) {
     try {
-      T parsed = YAML::Load(yaml).as<T>();
-      if (!allowed(parsed)) return false;
-      value = std::move(parsed);
-      return true;
+      return assign(YAML::Load(yaml).as<T>());
     } catch (const YAML::Exception&) {
       return false;
     }
   };
-  settings_.push_back({prefix_ + std::string(key), std::string(help), std::move(wanted), read,
-                       [&value] { return print_value(value); }});
+  constexpr bool kList = std::is_same_v<T, std::vector<std::string>>;
+  const auto take = [assign, read](const std::vector<std::string>& words) {
+    if constexpr (kList) {
+      return assign(words);
+    } else if constexpr (std::is_same_v<T, std::string>) {
+      return assign(words.back());
+    } else {
+      return read(words.back());
+    }
+  };
+  const std::string path = prefix_ + std::string(key);
+  const auto near = [&path](const Setting& setting) { return common_sections(setting.key, path); };
+  const auto beside = std::max_element(settings_.rbegin(), settings_.rend(),
+                                       [&](const Setting& a, const Setting& b) { return near(a) < near(b); });
+  const bool alone = beside == settings_.rend() || near(*beside) == 0;
+  const auto added = settings_.insert(
+      alone ? settings_.end() : beside.base(),
+      {path, std::string(help), std::move(wanted), read, take, [&value] { return print_value(value); }});
+  added->type = std::is_floating_point_v<T> ? "FLOAT" : std::is_arithmetic_v<T> ? "INT" : "TEXT";
+  added->is_switch = std::is_same_v<T, bool>;
+  added->is_list = kList;
+  return Bound(*added);
 }
 
-void ConfigBinder::field(std::string_view key, bool& value, std::string_view help) {
-  add(key, value, "true or false", anything<bool>, help);
+void ConfigBinder::Bound::option(std::string_view flags, std::string_view group) {
+  setting_.flags = flags;
+  setting_.group = group;
 }
 
-void ConfigBinder::field(std::string_view key, int& value, Range range, std::string_view help) {
-  add(key, value, wanted_number(range, "a whole number"), within(range), help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, bool& value, std::string_view help) {
+  return add(key, value, "true or false", anything<bool>, help);
 }
 
-void ConfigBinder::field(std::string_view key, std::uint32_t& value, Range range, std::string_view help) {
-  add(key, value, wanted_number(range, "a whole number"), within(range), help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, int& value, Range range, std::string_view help) {
+  return add(key, value, wanted_number(range, "a whole number"), within(range), help);
 }
 
-void ConfigBinder::field(std::string_view key, double& value, Range range, std::string_view help) {
-  add(key, value, wanted_number(range, "a number"), within(range), help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, std::uint32_t& value, Range range,
+                                        std::string_view help) {
+  return add(key, value, wanted_number(range, "a whole number"), within(range), help);
 }
 
-void ConfigBinder::field(std::string_view key, std::string& value, std::string_view help) {
-  add(key, value, "a text", anything<std::string>, help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, double& value, Range range, std::string_view help) {
+  return add(key, value, wanted_number(range, "a number"), within(range), help);
 }
 
-void ConfigBinder::field(std::string_view key, std::vector<std::string>& value, std::string_view help) {
-  add(key, value, "a list such as [a, b]", anything<std::vector<std::string>>, help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, std::string& value, std::string_view help) {
+  return add(key, value, "a text", anything<std::string>, help);
 }
 
-void ConfigBinder::field(std::string_view key, std::map<std::string, std::string>& value, std::string_view help) {
-  add(key, value, "a map such as {person: high}", anything<std::map<std::string, std::string>>, help);
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, std::vector<std::string>& value, std::string_view help) {
+  return add(key, value, "a list such as [a, b]", anything<std::vector<std::string>>, help);
+}
+
+ConfigBinder::Bound ConfigBinder::field(std::string_view key, std::map<std::string, std::string>& value,
+                                        std::string_view help) {
+  return add(key, value, "a map such as {person: high}", anything<std::map<std::string, std::string>>, help);
 }
 
 /// YAML 1.1 reads a bare `off` as a boolean; a choice takes the text as written.
-void ConfigBinder::choice(std::string_view key, std::string& value, std::vector<std::string> allowed,
-                          std::string_view help, std::map<std::string, std::string> former) {
+ConfigBinder::Bound ConfigBinder::choice(std::string_view key, std::string& value, std::vector<std::string> allowed,
+                                         std::string_view help, std::map<std::string, std::string> former) {
   const std::string wanted = fmt::format("one of {}", fmt::join(allowed, ", "));
+  const std::string type = fmt::format("TEXT:{{{}}}", fmt::join(allowed, ","));
   const auto listed = [allowed = std::move(allowed), former = std::move(former)](std::string& text) {
     if (const auto renamed = former.find(text); renamed != former.end()) text = renamed->second;
     return std::find(allowed.begin(), allowed.end(), text) != allowed.end();
   };
-  add(key, value, wanted, listed, help);
+  const Bound bound = add(key, value, wanted, listed, help);
+  find(prefix_ + std::string(key))->type = type;
+  return bound;
 }
 
 /// A section of another service holds no key of this binder: a typo in an own section stays an error.
 bool ConfigBinder::is_of_others(const std::string& key, const std::vector<std::string>& other_sections) const {
   const std::string section = section_of(key);
+  if (std::ranges::count(in_part_, section) > 0) {
+    return std::ranges::none_of(
+        settings_, [&](const Setting& setting) { return setting.key == key || setting.key.starts_with(key + '.'); });
+  }
   const bool own = std::any_of(settings_.begin(), settings_.end(),
                                [&](const Setting& setting) { return section_of(setting.key) == section; });
   return !own && std::find(other_sections.begin(), other_sections.end(), section) != other_sections.end();
@@ -189,10 +239,22 @@ std::vector<std::string> ConfigBinder::keys() const {
   return result;
 }
 
+void ConfigBinder::part_of_section(std::string_view name, const std::function<void(ConfigBinder&)>& bind) {
+  in_part_.emplace_back(name);
+  const std::string outer = prefix_;
+  prefix_.append(name).append(".");
+  bind(*this);
+  prefix_ = outer;
+}
+
+ConfigBinder::Setting* ConfigBinder::find(const std::string& key) {
+  const auto setting = std::ranges::find(settings_, key, &Setting::key);
+  return setting == settings_.end() ? nullptr : &*setting;
+}
+
 void ConfigBinder::set(const std::string& key, const std::string& yaml_value, const std::string& origin) {
-  const auto setting =
-      std::find_if(settings_.begin(), settings_.end(), [&](const Setting& known) { return known.key == key; });
-  if (setting == settings_.end()) {
+  const Setting* const setting = find(key);
+  if (setting == nullptr) {
     const std::string near = nearest_name(key, keys());
     throw ConfigError(
         fmt::format("{}: unknown key '{}'{}", origin, key,
@@ -200,6 +262,13 @@ void ConfigBinder::set(const std::string& key, const std::string& yaml_value, co
   }
   if (!setting->read(yaml_value))
     throw ConfigError(fmt::format("{}: {} = {} is not allowed: use {}", origin, key, yaml_value, setting->wanted));
+}
+
+void ConfigBinder::set(const GivenOption& option) {
+  const Setting* const setting = find(option.key);
+  if (setting == nullptr || !setting->take(option.words))
+    throw ConfigError(fmt::format("{} {} is not allowed: use {}", option.flag, fmt::join(option.words, ","),
+                                  setting == nullptr ? "another option" : setting->wanted));
 }
 
 void ConfigBinder::set(const std::string& assignment, const std::vector<std::string>& other_sections) {
@@ -245,10 +314,55 @@ std::string ConfigBinder::print() const {
     const auto first_new = std::mismatch(open.begin(), open.end(), sections.begin(), sections.end()).second;
     for (auto section = first_new; section != sections.end(); ++section)
       out += fmt::format("{:{}}{}:\n", "", 2 * (section - sections.begin()), *section);
-    out += fmt::format("{:{}}{}: {}  # {}\n", "", 2 * sections.size(), leaf, setting.print(), setting.help);
+    const std::string option = setting.flags.starts_with('-') ? fmt::format(" ({})", setting.flags) : "";
+    out += fmt::format("{:{}}{}: {}  # {}{}\n", "", 2 * sections.size(), leaf, setting.print(), setting.help, option);
     open = std::move(sections);
   }
   return out;
+}
+
+namespace {
+
+/// What `--help` shows of a default, one word: nothing of a switch that is off, an empty text or list.
+std::string shown_default(std::string printed) {
+  std::erase(printed, ' ');
+  return printed == "false" || printed == "\"\"" || printed == "[]" ? "" : printed;
+}
+
+}  // namespace
+
+void ConfigBinder::add_options(CLI::App& app, std::vector<GivenOption>& given) const {
+  for (const Setting& setting : settings_) {
+    if (setting.flags.empty()) continue;
+    std::string help = fmt::format("{} ({})", setting.help, setting.key);
+    help.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(help.front())));
+    const auto keep = [&given, key = setting.key, flags = setting.flags](std::vector<std::string> words) {
+      given.push_back({key, flags.substr(flags.rfind(',') + 1), std::move(words)});
+    };
+    CLI::Option* option = nullptr;
+    if (setting.is_switch) {
+      option = app.add_flag_function(
+          setting.flags, [keep](std::int64_t count) { keep({count > 0 ? "true" : "false"}); }, help);
+    } else if (setting.is_list) {
+      option = app.add_option_function<std::vector<std::string>>(setting.flags, keep, help)->delimiter(',');
+    } else {
+      option = app.add_option_function<std::string>(
+          setting.flags, [keep](const std::string& word) { keep({word}); }, help);
+      option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast)->type_name(setting.type);
+    }
+    if (const std::string value = shown_default(setting.print()); !value.empty()) option->default_str(value);
+    if (!setting.group.empty()) option->group(setting.group);
+  }
+}
+
+std::vector<std::string> to_command_line(const std::vector<GivenOption>& given, const std::string& section,
+                                         const std::vector<std::string>& without) {
+  std::vector<std::string> line;
+  for (const GivenOption& option : given) {
+    if (section_of(option.key) == section && std::ranges::count(without, option.key) == 0)
+      line.push_back(fmt::format("{}={}", option.flag, fmt::join(option.words, ",")));
+  }
+  return line;
 }
 
 }  // namespace rtd::service

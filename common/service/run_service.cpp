@@ -20,6 +20,7 @@
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/service/bus_config.hpp"
+#include "common/service/command_line.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
@@ -32,17 +33,14 @@ namespace rtd::service {
 namespace {
 
 struct CommonOptions {
-  BusArguments bus;
   ConfigSources config;
   std::string pace = "realtime", log_level = "info";
   bool print_config = false;
 };
 
 void add_common_options(CLI::App& app, CommonOptions& common) {
-  app.add_option("--config", common.config.file, "YAML file with a section per service");
-  app.add_option("--set", common.config.overrides, "Override one key, e.g. --set filter.mode=rtd (repeatable)");
+  add_source_options(app, common.config);
   app.add_option("--pace", common.pace, "realtime, asap or lockstep")->capture_default_str();
-  add_bus_options(app, common.bus);
   app.add_option("--log-level", common.log_level, "trace, debug, info, warning, error")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error"}))
       ->capture_default_str();
@@ -172,21 +170,19 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
   definition.bind(binder);
 
   try {
-    // Options write straight into the config, so they are parsed twice: once to find --config, once to win over it.
     const std::string program = "rtd-" + definition.name;
     CLI::App app{definition.description, program};
+    wrap_help(app);
     app.set_version_flag("--version", program + " " RTD_VERSION);
     add_common_options(app, common);
-    definition.add_options(app);
+    binder.add_options(app, common.config.given);
+    if (definition.add_options) definition.add_options(app, common.config.given);
     try {
-      app.parse(argc, argv);
-      load_config(binder, common.bus, common.config);
-      common.config.overrides.clear();
-      app.clear();
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {  // or --help, --version
       return app.exit(error) == 0 ? kOk : kUsageOrConfig;
     }
+    load_config(binder, common.config);
     if (common.print_config) {
       std::cout << binder.print();
       return kOk;

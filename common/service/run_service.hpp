@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -21,9 +22,10 @@ namespace rtd::service {
 struct ServiceDefinition {
   std::string name;         ///< "filter": executable rtd-filter, config section `filter`
   std::string description;  ///< one line for --help
-  std::function<void(CLI::App&)> add_options;
   std::function<void(ConfigBinder&)> bind;
   std::function<ExitCode(Runtime&)> run;  ///< returns when stop is requested or the work is done
+  /// What the command line has beside the options of the settings. Keys that it sets go to the list.
+  std::function<void(CLI::App&, std::vector<GivenOption>&)> add_options = {};
   /// Called once the configuration is loaded. The name of its heartbeat where several processes of it may run in one
   /// domain; "": the usual one, `name`, which belongs to one process.
   std::function<std::string()> shared_name = {};
@@ -42,14 +44,15 @@ ExitCode run_to_end(Service&& service, const Runtime& runtime) {
 }
 
 /// Service needs: static constexpr kName, kDescription; struct Config { void bind(auto& binder); };
-/// static void add_options(CLI::App&, Config&); Service(const Config&, Runtime&); ExitCode run().
+/// Service(const Config&, Runtime&); ExitCode run(). It may have: static ServiceDefinition::add_options.
 template <class Service>
 int run_service(int argc, char** argv) {
   typename Service::Config config;
-  return run_service({Service::kName, Service::kDescription, [&](CLI::App& app) { Service::add_options(app, config); },
-                      [&](ConfigBinder& binder) { binder.section(Service::kName, config); },
-                      [&](Runtime& runtime) { return run_to_end(Service(config, runtime), runtime); }},
-                     argc, argv);
+  ServiceDefinition definition{Service::kName, Service::kDescription,
+                               [&](ConfigBinder& binder) { binder.section(Service::kName, config); },
+                               [&](Runtime& runtime) { return run_to_end(Service(config, runtime), runtime); }};
+  if constexpr (requires { &Service::add_options; }) definition.add_options = Service::add_options;
+  return run_service(definition, argc, argv);
 }
 
 /// Warns once when no other service was seen for a while: in which domain this one is, and in which domains DDS runs on

@@ -66,18 +66,9 @@ int readers_of(const std::string& service) {
 
 }  // namespace
 
-void CameraService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--source", config.source, source_help() + " (camera.source)");
-  app.add_option("--frames", config.frames, "Play at most N frames, 0 = all (camera.frames)")
-      ->check(CLI::NonNegativeNumber);
-  app.add_option("--wait-for", config.wait_for,
-                 "Services that must be ready first, e.g. filter,slam; none (camera.wait_for)")
-      ->delimiter(',');
-  app.add_option("--groundtruth-out", config.groundtruth_out,
-                 "Write the ground truth to this file (camera.groundtruth_out)");
-  app.add_option("--export", config.export_folder, "Write the source to a new folder in TUM's layout and end");
-  app.add_flag("--preview", config.preview,
-               "Print what the source delivers, write a picture and end (--preview --help)");
+void CameraService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
+  app.add_option("--export")->description("Write the source to a new folder in TUM's layout and end");
+  app.add_flag("--preview")->description("Print what the source delivers, write a picture and end (--preview --help)");
 }
 
 CameraService::CameraService(const Config& config, service::Runtime& runtime)
@@ -368,9 +359,7 @@ void CameraService::write_groundtruth() {
   try {
     io::write_file(
         config_.groundtruth_out,
-        [&](std::ostream& file) {
-          geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth);
-        },
+        [&](std::ostream& file) { geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth); },
         {.named_by = io::NamedBy::kOperator});
   } catch (const io::IoError& error) {
     SPDLOG_ERROR("event=groundtruth_not_written cause=\"{}\"", error.what());

@@ -11,14 +11,15 @@
 
 #include "common/camera/depth_offsets.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/read_ahead.hpp"
-#include "common/camera/source_schemes.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {
@@ -39,12 +40,10 @@ struct ServiceConfig {
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;
-  std::string export_folder;  ///< only for the help of --export, which runs no service
-  bool preview = false;       ///< the same of --preview
 
   void bind(auto& binder) {
-    binder.field("source", source, "where frames come from: " + all_source_forms());
-    binder.field("frames", frames, {0, 1e9}, "play at most this many frames, 0 = all");
+    binder.field("source", source, source_help()).option("--source");
+    binder.field("frames", frames, {0, 1e9}, "play at most this many frames, 0 = all").option("--frames");
     binder.field("jpeg_quality", jpeg_quality, {1, 100}, "of the compressed topic, encoded only while it has readers");
     binder.field("asap_window", asap_window, {1, 3}, "pace asap: frames without a result at a time");
     binder.field("resend_after_ms", resend_after_ms, {10, 60000},
@@ -53,8 +52,10 @@ struct ServiceConfig {
     binder.field("start_timeout_s", start_timeout_s, {0, 3600},
                  "longest wait for a running camera, and for the services of wait_for");
     binder.field("max_gap_s", max_gap_s, {0.01, 3600}, "pace realtime: longer pauses between stamps are cut to this");
-    binder.field("wait_for", wait_for, "services that must be ready before the first frame");
-    binder.field("groundtruth_out", groundtruth_out, "file that gets the ground truth in TUM format, empty = none");
+    binder.field("wait_for", wait_for, "services that must be ready before the first frame, or none")
+        .option("--wait-for");
+    binder.field("groundtruth_out", groundtruth_out, "file that gets the ground truth in TUM format, empty = none")
+        .option("--groundtruth-out");
   }
 };
 
@@ -64,7 +65,7 @@ class CameraService {
   static constexpr const char* kName = "camera";
   static constexpr const char* kDescription = "Plays RGB-D frames from a folder or a synthetic scene onto the bus";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Opens the source, but for a running camera, which run() waits for; throws ConfigError when it cannot be used.
   CameraService(const Config& config, service::Runtime& runtime);

@@ -6,12 +6,12 @@
 #include <string>
 
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/camera/tum/tum_export.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "services/camera/camera_service.hpp"
-#include "common/camera/source_schemes.hpp"
 #include "services/camera/preview_command.hpp"
 
 namespace rtd::camera {

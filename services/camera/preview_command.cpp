@@ -24,14 +24,14 @@ namespace {
 struct PreviewOptions {
   std::string source, picture = "preview.png";
   double seconds = 3;
-  service::BusArguments bus;
+  service::ConfigSources bus;
 };
 
 std::unique_ptr<FrameSource> open_for_preview(const PreviewOptions& options) {
   constexpr std::int64_t kOpenTimeoutNs = 10'000'000'000;
   const std::string uri = complete_uri(options.source);
   if (!is_live(uri)) return make_source(uri);
-  const bus::BusOptions bus = service::load_bus_options(options.bus, {}, "rtd-camera-preview");
+  const bus::BusOptions bus = service::load_bus_options(options.bus, "rtd-camera-preview");
   return make_live_source(uri, bus, kOpenTimeoutNs, [said = std::string()](const std::string& what) mutable {
     if (!what.empty() && what != said) std::cerr << "rtd-camera: " << what << '\n';
     said = what;

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
 
@@ -57,12 +56,6 @@ std::optional<NavigationMap> make_navigation(const GridConfig& config) {
   const Eigen::Vector3d up = parse_up(config.up);
   if (!config.enabled) return std::nullopt;
   return NavigationMap(config.core, up);
-}
-
-void DenseService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--out", config.out_dir, "Folder for static_map.ply, map.pgm, map.yaml and map.bt (dense.out)");
-  app.add_option("--up", config.grid.up, "What points up in the map: x,y,z (dense.grid.up)");
-  app.add_flag("--background", config.background, "Also write background.png (dense.background)");
 }
 
 DenseService::DenseService(const Config& config, service::Runtime& runtime)

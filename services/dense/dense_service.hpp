@@ -17,10 +17,6 @@
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace rtd::dense {
 
 /// Maps for navigation: the floor plan and the voxel map.
@@ -32,9 +28,11 @@ struct GridConfig {
 
   void bind(auto& binder) {
     binder.field("enabled", enabled, "make a floor plan on rt/map and, at the end, map.pgm, map.yaml and map.bt");
-    binder.field("up", up,
-                 "what points up in the map: x,y,z; 0,0,1 where slam knows the base of the robot. Empty: 0,-1,0, up in "
-                 "the first image");
+    binder
+        .field("up", up,
+               "what points up in the map: x,y,z; 0,0,1 where slam knows the base of the robot. Empty: 0,-1,0, up in "
+               "the first image")
+        .option("--up");
     binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two plans on rt/map");
     core.bind(binder);
   }
@@ -57,11 +55,15 @@ struct ServiceConfig {
   DenseConfig core;
 
   void bind(auto& binder) {
-    binder.field("out", out_dir, "folder for static_map.ply and the maps of grid, written at the end; empty: none");
+    binder
+        .field("out", out_dir,
+               "folder for static_map.ply, map.pgm, map.yaml and map.bt, written at the end; empty: none")
+        .option("--out");
     binder.field("every", every, {1, 10000}, "one frame in so many is fused, and each keyframe");
     binder.field("without_masks", without_masks,
                  "also fuse frames without a mask from the filter: moving objects leave ghosts");
-    binder.field("background", background, "also write background.png: the last frame without moving objects");
+    binder.field("background", background, "also write background.png: the last frame without moving objects")
+        .option("--background");
     binder.field("background_views", background_views, {1, 500}, "earlier frames kept for it, 1.6 MB each");
     binder.field("map_frame", map_frame, "frame of the published cloud");
     binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two clouds on rt/dense/points");
@@ -80,7 +82,6 @@ class DenseService {
   static constexpr const char* kName = "dense";
   static constexpr const char* kDescription = "Fuses depth images without what moves into a dense static map";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
 
   DenseService(const Config& config, service::Runtime& runtime);
   DenseService(const DenseService&) = delete;

@@ -87,24 +87,7 @@ DetectorConfig core_config(const ServiceConfig& config) {
   return core;
 }
 
-void DetectorService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--model", config.model, "ONNX file (detector.model)");
-  app.add_option("--input", config.input, "auto, frame or jpeg (detector.input)")
-      ->check(CLI::IsMember({"auto", "frame", "jpeg"}));
-  app.add_option("--engine", config.core.engine,
-                 std::string("What computes the network: ") + msg::kEngineNames + " (detector.engine)");
-  app.add_flag("--verify-engine", config.verify_engine,
-               "Compare the first ten images with the CPU, and continue with the CPU if they differ");
-  app.add_option("--max-rate", config.max_rate_hz, "Realtime pace: at most this many detections a second, 0 = no limit")
-      ->check(CLI::Range(0.0, 1000.0));
-  app.add_option("--robots", config.robots,
-                 "Serve several robots by their JPEG images: all, or names such as anna,ben (detector.robots)")
-      ->delimiter(',');
-  app.add_option("--batch", config.batch, "With --robots: images computed at once, at most (detector.batch)")
-      ->check(CLI::Range(1, 64));
-  app.add_option("--decoders", config.decoders,
-                 "With --robots: threads that decode JPEGs, 0 = up to four cores (detector.decoders)")
-      ->check(CLI::Range(0, 64));
+void DetectorService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
   app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
 }
 

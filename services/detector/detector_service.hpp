@@ -14,8 +14,10 @@
 
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/msg/ros.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
+#include "common/service/run_settings.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "common/vision/detection.hpp"
@@ -54,16 +56,27 @@ struct ServiceConfig {
   double first_roll_deg = 0, first_pitch_deg = 0;
 
   void bind(auto& binder) {
-    binder.field("model", model, "ONNX file: a path, or a name looked for in RTD_MODEL_DIR and the user's cache");
-    binder.choice("input", input, {"auto", "frame", "jpeg"},
-                  "raw frames of this host, JPEG images of the network, or auto: where the camera is");
-    binder.field("robots", robots, "serve several robots by their JPEG images: [all], or names; []: one robot");
-    binder.field("batch", batch, {1, 64}, "several robots: images computed at once, at most");
-    binder.field("decoders", decoders, {0, 64}, "several robots: threads that decode JPEGs, 0 = up to four cores");
+    service::bind_model(binder, model);
+    binder
+        .choice("input", input, {"auto", "frame", "jpeg"},
+                "raw frames of this host, JPEG images of the network, or auto: where the camera is")
+        .option("--input");
+    binder
+        .field("robots", robots,
+               "serve several robots by their JPEG images: all, or names such as anna,ben; empty: one robot")
+        .option("--robots");
+    binder.field("batch", batch, {1, 64}, "several robots: images computed at once, at most").option("--batch");
+    binder.field("decoders", decoders, {0, 64}, "several robots: threads that decode JPEGs, 0 = up to four cores")
+        .option("--decoders");
     core.bind(binder);
-    binder.field("verify_engine", verify_engine, "compare the first ten images with the CPU");
+    service::bind_engine(binder, core.engine);
+    binder
+        .field("verify_engine", verify_engine,
+               "compare the first ten images with the CPU, and continue with the CPU if they differ")
+        .option("--verify-engine");
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
-    binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit");
+    binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit")
+        .option("--max-rate");
     binder.choice("derotate", derotate, {"off", "on"},
                   "on: detect on the image turned upright by the roll of slam's poses");
     binder.field("derotate_min_deg", derotate_min_deg, {0.0, 180.0}, "a smaller roll is left as it is");
@@ -86,7 +99,7 @@ class DetectorService {
   static constexpr const char* kName = "detector";
   static constexpr const char* kDescription = "Finds people and things in camera images (YOLOv5-Lite)";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Loads the network. Throws ConfigError when there is none or it is broken.
   DetectorService(const Config& config, service::Runtime& runtime);

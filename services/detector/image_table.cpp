@@ -10,8 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/run_settings.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "services/detector/core/detector.hpp"
 
@@ -53,10 +55,15 @@ int print_image_table(int argc, const char* const* argv) {
   std::string model_name;
   DetectorConfig config;
   app.add_option("--image", files, "Image files")->required();
-  app.add_option("--model", model_name, "ONNX file");
+  service::ConfigBinder binder;
+  std::vector<service::GivenOption> given;
+  service::bind_model(binder, model_name);
+  service::bind_engine(binder, config.engine);
+  binder.add_options(app, given);
   app.add_option("--confidence", config.decode.confidence_threshold, "Least score")->check(CLI::Range(0.01, 1.0));
   try {
     app.parse(argc, argv);
+    for (const service::GivenOption& option : given) binder.set(option);
     const service::ModelSearch model = service::find_model(model_name, service::process_environment());
     if (!model) throw ModelError(model.message);
     config.model_path = model.path;
@@ -64,7 +71,7 @@ int print_image_table(int argc, const char* const* argv) {
     return print_files(detector, files);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
-  } catch (const ModelError& error) {
+  } catch (const std::runtime_error& error) {
     std::cerr << "rtd-detector: " << error.what() << '\n';
     return service::kUsageOrConfig;
   }

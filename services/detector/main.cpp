@@ -21,8 +21,8 @@ int run_detector(int argc, char** argv) {
   };
   return rtd::service::run_service(
       {DetectorService::kName, DetectorService::kDescription,
-       [&config](CLI::App& app) { DetectorService::add_options(app, config); },
        [&config](rtd::service::ConfigBinder& binder) { binder.section(DetectorService::kName, config); }, run,
+       DetectorService::add_options,
        [&config] { return config.robots.empty() ? std::string() : FleetService::kHeartbeatName; }},
       argc, argv);
 }

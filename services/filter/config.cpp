@@ -3,12 +3,13 @@
 #include "services/filter/config.hpp"
 
 #include "common/msg/filter_modes.hpp"
+#include "common/service/run_settings.hpp"
 #include "common/vision/motion_levels.hpp"
 
 namespace rtd::filter {
 
 void ServiceConfig::bind(service::ConfigBinder& binder) {
-  binder.choice("mode", mode, msg::filter_mode_names(), "which parts of the filter are at work");
+  service::bind_filter_mode(binder, mode);
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector if one runs; off: never wait, never use");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
                "asap, lockstep: longest wait for the boxes of one frame");

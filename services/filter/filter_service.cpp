@@ -36,11 +36,6 @@ LoadWatch watch_from(int first_step) {
 
 }  // namespace
 
-void FilterService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--mode", config.mode, msg::word_list(msg::filter_mode_names()) + " (filter.mode)")
-      ->check(CLI::IsMember(msg::filter_mode_names()));
-}
-
 FilterService::FilterService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),

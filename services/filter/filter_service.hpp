@@ -38,7 +38,6 @@ class FilterService {
   static constexpr const char* kName = "filter";
   static constexpr const char* kDescription = "Extracts ORB features and finds out which of them lie on moving objects";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
 
   FilterService(const Config& config, service::Runtime& runtime);
   ~FilterService();

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <iostream>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,13 +11,11 @@
 #include "common/bus/topic_roles.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/io/printable.hpp"
-#include "common/msg/engine_names.hpp"
-#include "common/msg/filter_modes.hpp"
 #include "common/msg/services.hpp"
-#include "common/msg/word_list.hpp"
 #include "common/process/executable.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
+#include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
@@ -135,65 +131,17 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
-  service::BusArguments bus;
-  service::ConfigSources config;
-  service::add_bus_options(app, bus);
-  app.add_option("--config", config.file);
-  app.add_option("--set", config.overrides);
+  service::ConfigSources sources;
+  service::add_source_options(app, sources);
+  service::add_bus_options(app, sources);
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::ParseError&) {
     return "";  // the replay says what is wrong
   }
-  std::vector<std::string> command = service::to_command_line(bus);
-  if (!config.file.empty()) command.insert(command.end(), {"--config", config.file});
-  for (const std::string& assignment : config.overrides) command.insert(command.end(), {"--set", assignment});
+  std::vector<std::string> command = service::to_command_line(sources);
   command.insert(command.end(), {"--log-level", "warning"});
   return process::start_companion(executable, command);
-}
-
-/// Lines of at most 100 characters; what does not fit continues in the column of the descriptions.
-class WrappedHelp final : public CLI::Formatter {
- public:
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    std::istringstream lines(CLI::Formatter::make_help(app, std::move(name), mode));
-    std::string text;
-    for (std::string line; std::getline(lines, line);) {
-      if (line.empty() && (text.empty() || text.ends_with("\n\n"))) continue;
-      while (line.size() > kColumns) {
-        const std::size_t end = line.rfind(' ', kColumns);
-        if (end == std::string::npos || end <= get_column_width()) break;
-        text += line.substr(0, end) + '\n';
-        line = std::string(line.front() == ' ' ? get_column_width() : 0, ' ') + line.substr(end + 1);
-      }
-      text += line + '\n';
-    }
-    return text;
-  }
-
- private:
-  static constexpr std::size_t kColumns = 100;
-};
-
-/// The options of `rtd run --help` by what they are about; those that are not named are the advanced ones.
-void group_run_options(CLI::App& command) {
-  const std::pair<const char*, std::vector<const char*>> groups[] = {
-      {"Source", {"--source", "--frames", "--pace", "--replay-topics"}},
-      {"Results", {"--out", "--record", "--viewer", "--dense", "--trace", "--quiet"}},
-      {"Dynamic points", {"--filter", "--detector", "--model", "--engine"}},
-      {"Map", {"--map", "--save-map", "--maps-dir", "--localize-only"}},
-      {"Robot", {"--base-frame", "--camera-in-base", "--gravity", "--imu", "--wheel-odometry", "--robot"}},
-      {"Network", {"--domain", "--dds", "--dds-of", "--profile", "--peers", "--interface", "--discovery-server"}},
-      {"Security", {"--secure", "--keystore"}}};
-  for (CLI::Option* option : command.get_options()) option->group("Advanced");
-  command.get_help_ptr()->group("");  // it would bring its group to the top
-  for (const auto& [group, names] : groups)
-    for (const char* name : names) command.get_option(name)->group(group);
-  command.footer(
-      "Examples:\n"
-      "  rtd run --source synthetic:office --out /tmp/office --viewer\n"
-      "  rtd run --source tum:rgbd_dataset_freiburg3_walking_xyz --out walking --pace lockstep\n"
-      "  rtd run --source ros2:/camera/color/image_raw,/camera/depth/image_raw --out live --record live.mcap");
 }
 
 /// `rtd complete WORD...`: prints the candidates for the last word, for the shells' scripts (deploy/completion).
@@ -226,73 +174,55 @@ struct Requests {
   DoctorOptions doctor;
 };
 
-void add_robot_options(CLI::App& command, RunOptions& options) {
-  command.add_option("--base-frame", options.base_frame, "Frame of the robot, with --camera-in-base (base_link)");
-  command.add_option("--camera-in-base", options.camera_in_base,
-                     "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static "
-                     "says; poses are then those of the base, in a map with z up");
-  command
-      .add_option(
-          "--gravity", options.gravity,
-          "What is up in the map: level (as the base stands when it begins), floor (that the camera sees) or imu")
-      ->transform([](const std::string& name) { return name == "told" ? std::string("level") : name; })
-      ->check(CLI::IsMember({"level", "floor", "imu"}));
-  command.add_option("--imu", options.imu,
-                     "Topic of an IMU beside the camera, sensor_msgs/Imu: poses continue while nothing can be seen");
-  command.add_option("--wheel-odometry", options.wheel_odometry,
-                     "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base");
-}
-
 void add_run_command(CLI::App& app, RunOptions& options) {
   CLI::App* command = app.add_subcommand("run", "Run camera, detector, filter and slam on a source and report");
+  command->option_defaults()->group("Source");
   command->add_option("--source", options.source, camera::source_help())->required();
-  command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
+  command->add_option("--frames", options.frames, "End after this many frames");
   command->add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
       ->capture_default_str();
-  command->add_option("--filter", options.filter_mode, msg::word_list(msg::filter_mode_names()) + " (default rtd)")
-      ->check(CLI::IsMember(msg::filter_mode_names()));
-  service::add_bus_options(*command, options.bus);
-  command->add_option("--dds-of", options.dds_of,
-                      "Another DDS for one service, e.g. detector=cyclonedds (repeatable); all vendors interoperate");
-  command
-      ->add_option("--detector", options.detector,
-                   "auto: if weights are found; off: geometry only; remote: on another host")
-      ->check(CLI::IsMember({"auto", "off", "remote"}))
-      ->capture_default_str();
-  command->add_option("--model", options.model,
-                      "Detector weights, ONNX (default: RTD_MODEL_DIR, then the user's cache)");
-  command->add_option("--engine", options.engine,
-                      std::string("What computes the detector's network: ") + msg::kEngineNames);
-  command->add_option("--frames", options.frames, "End after this many frames");
-  command->add_option("--map", options.map, "Continue the map in this file");
-  command->add_option("--save-map", options.save_map, "Map file to write (default: map.rtdmap in the folder of --out)");
-  command->add_option(
-      "--maps-dir", options.maps_dir,
-      "Folder of the maps that /slam/save_map and /slam/load_map may name (default: that of the map file)");
-  add_robot_options(*command, options);
-  command->add_flag("--localize-only", options.localize_only,
-                    "Only find poses in the map of --map, leave it unchanged");
-  command->add_flag(
-      "--dense", options.dense,
-      "Also fuse a dense static map, with floor plan and voxel map: static_map.ply, map.pgm, map.yaml, map.bt");
-  command->add_flag("--viewer", options.viewer,
-                    "Also show the run in the browser; the address is printed (--set viewer.port=...)");
-  command->add_option("--record", options.record,
-                      "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
-  command->add_option("--trace", options.trace,
-                      "Also write what each service did when, for ui.perfetto.dev or chrome://tracing: FILE.json");
   command
       ->add_option(
           "--replay-topics", options.replay_topics,
           "With --source mcap:FILE: use recorded detections or features instead of detector, or detector and filter")
       ->delimiter(',')
       ->check(CLI::IsMember({"detections", "features"}));
+  command->option_defaults()->group("Results");
+  command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
+  command->add_option("--record", options.record,
+                      "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
+  command->add_flag("--viewer", options.viewer,
+                    "Also show the run in the browser; the address is printed (--set viewer.port=...)");
+  command->add_flag(
+      "--dense", options.dense,
+      "Also fuse a dense static map, with floor plan and voxel map: static_map.ply, map.pgm, map.yaml, map.bt");
+  command->add_option("--trace", options.trace,
+                      "Also write what each service did when, for ui.perfetto.dev or chrome://tracing: FILE.json");
   command->add_flag("--quiet", options.quiet, "Only warnings and errors");
-  command->add_option("--config", options.config_file, "YAML file with a section per service")
-      ->check(CLI::ExistingFile);
-  command->add_option("--set", options.overrides, "Override one key, e.g. --set filter.mode=geometry (repeatable)");
-  group_run_options(*command);
+  command
+      ->add_option("--detector", options.detector,
+                   "auto: if weights are found; off: geometry only; remote: on another host")
+      ->check(CLI::IsMember({"auto", "off", "remote"}))
+      ->capture_default_str()
+      ->group("Dynamic points");
+  ServiceSettings settings;
+  service::ConfigBinder binder;
+  settings.bind(binder);
+  binder.add_options(*command, options.config.given);
+  service::add_bus_options(*command, options.config);
+  command
+      ->add_option("--dds-of", options.dds_of,
+                   "Another DDS for one service, e.g. detector=cyclonedds (repeatable); all vendors interoperate")
+      ->group("Network");
+  command->option_defaults()->group("Advanced");
+  service::add_source_options(*command, options.config);
+  command->get_help_ptr()->group("");  // it would bring its group to the top
+  command->footer(
+      "Examples:\n"
+      "  rtd run --source synthetic:office --out /tmp/office --viewer\n"
+      "  rtd run --source tum:rgbd_dataset_freiburg3_walking_xyz --out walking --pace lockstep\n"
+      "  rtd run --source ros2:/camera/color/image_raw,/camera/depth/image_raw --out live --dense");
 }
 
 void add_demo_command(CLI::App& app, DemoOptions& options) {
@@ -300,7 +230,7 @@ void add_demo_command(CLI::App& app, DemoOptions& options) {
   command->add_option("--dataset", options.dataset, "TUM RGB-D sequence to download, e.g. fr3_walking_xyz");
   command->add_option("--out", options.out_dir, "Folder for both runs and demo.html")->capture_default_str();
   command->add_option("--frames", options.frames, "End after this many frames");
-  service::add_bus_options(*command, options.bus);
+  service::add_bus_options(*command, options.config);
 }
 
 void add_doctor_command(CLI::App& app, DoctorOptions& options) {
@@ -308,10 +238,8 @@ void add_doctor_command(CLI::App& app, DoctorOptions& options) {
       "doctor",
       "Check this host for a run with these options: services, memory, network, keys, weights, data, cameras");
   command->add_flag("--clean", options.clean, "Remove what killed processes left in /dev/shm");
-  service::add_bus_options(*command, options.bus);
-  command->add_option("--config", options.config.file, "YAML file with a section per service")
-      ->check(CLI::ExistingFile);
-  command->add_option("--set", options.config.overrides, "Override one key of bus, e.g. --set bus.domain=5");
+  service::add_bus_options(*command, options.config);
+  service::add_source_options(*command, options.config);
 }
 
 int dispatch(const CLI::App& app, const Requests& requests) {
@@ -341,7 +269,7 @@ int front(int argc, char** argv) {
 
   Requests requests;
   CLI::App app{"RTD-SLAM: RGB-D SLAM that stays accurate when people walk through the view", "rtd"};
-  app.formatter(std::make_shared<WrappedHelp>());
+  service::wrap_help(app);
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
   add_doctor_command(app, requests.doctor);

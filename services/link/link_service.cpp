@@ -43,16 +43,17 @@ bus::BusOptions robot_options(const service::Runtime& runtime) {
 
 /// The robot's, with a network of its own.
 bus::BusOptions fleet_options(const ServiceConfig& config, const service::Runtime& runtime) {
-  service::BusArguments arguments;
-  arguments.profile = config.fleet_profile;
-  arguments.peers = config.fleet_peers;
-  arguments.interfaces = config.fleet_interfaces;
-  arguments.discovery_server = config.fleet_discovery_server;
-  arguments.vendor = config.fleet_dds.empty() ? runtime.bus_options.vendor : config.fleet_dds;
-  arguments.domain = config.fleet_domain;
+  service::ConfigSources sources;
+  sources.profile = config.fleet_profile;
+  const auto give = [&sources](const char* key, const char* flag, const std::vector<std::string>& words) {
+    if (!words.empty() && !words.front().empty()) sources.given.push_back({key, flag, words});
+  };
+  give("bus.network.peers", "--fleet-peers", config.fleet_peers);
+  give("bus.network.interfaces", "--fleet-interface", config.fleet_interfaces);
+  give("bus.network.discovery_server", "--fleet-discovery-server", {config.fleet_discovery_server});
   bus::BusOptions options = runtime.bus_options;
-  options.network = service::load_bus_options(arguments, {}, "rtd-link").network;
-  options.vendor = arguments.vendor;
+  options.network = service::load_bus_options(sources, "rtd-link").network;
+  if (!config.fleet_dds.empty()) options.vendor = config.fleet_dds;
   options.domain = static_cast<std::uint32_t>(config.fleet_domain);
   options.participant_name = "rtd-link-" + runtime.bus.robot();
   return options;
@@ -60,22 +61,7 @@ bus::BusOptions fleet_options(const ServiceConfig& config, const service::Runtim
 
 }  // namespace
 
-void LinkService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--fleet", config.fleet_domain, "DDS domain of the fleet (link.fleet_domain)")
-      ->check(CLI::Range(0, 232));
-  app.add_option(
-         "--topics", config.topics,
-         "Topics or patterns that pass to the fleet, e.g. '/slam/*'; with in: in front to the robot, e.g. in:/goal")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--fleet-profile", config.fleet_profile, "Network profile of the fleet's side (default: localhost)");
-  app.add_option("--fleet-peers", config.fleet_peers, "Hosts of the fleet to ask directly, e.g. gpubox")
-      ->delimiter(',');
-  app.add_option("--fleet-interface", config.fleet_interfaces, "Network interfaces to the fleet (default: all)")
-      ->delimiter(',');
-  app.add_option("--fleet-discovery-server", config.fleet_discovery_server,
-                 "HOST:PORT of a Fast DDS Discovery Server of the fleet");
-  app.add_option("--fleet-dds", config.fleet_dds, "DDS implementation of the fleet's side (default: the robot's)");
+void LinkService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
   app.footer(
       "--domain, --profile, --dds and their like are those of the robot's own services. Heartbeats always pass.\n"
       "Example: rtd link --robot anna --domain 7 --fleet 0 --fleet-profile lan");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/service/bus_config.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/service_lock.hpp"
@@ -29,13 +30,24 @@ struct ServiceConfig {
   std::vector<std::string> fleet_peers, fleet_interfaces;
 
   void bind(auto& binder) {
-    binder.field("fleet_domain", fleet_domain, {-1, 232}, "DDS domain of the fleet (--fleet)");
-    binder.field("topics", topics, "patterns of topics that pass; with in: in front from the fleet to the robot");
-    binder.field("fleet_profile", fleet_profile, "network profile of the fleet's side (--fleet-profile)");
-    binder.field("fleet_peers", fleet_peers, "hosts of the fleet that are asked directly (--fleet-peers)");
-    binder.field("fleet_interfaces", fleet_interfaces, "network interfaces to the fleet (--fleet-interface)");
-    binder.field("fleet_discovery_server", fleet_discovery_server, "HOST:PORT (--fleet-discovery-server)");
-    binder.field("fleet_dds", fleet_dds, "DDS implementation of the fleet's side; empty: the robot's (--fleet-dds)");
+    binder.field("fleet_domain", fleet_domain, {-1, 232}, "DDS domain of the fleet").option("--fleet");
+    binder
+        .field(
+            "topics", topics,
+            "topics or patterns that pass to the fleet, e.g. '/slam/*'; with in: in front to the robot, e.g. in:/goal")
+        .option("--topics");
+    binder.field("fleet_profile", fleet_profile, "network profile of the fleet's side; empty: localhost")
+        .option("--fleet-profile");
+    binder.field("fleet_peers", fleet_peers, "hosts of the fleet that are asked directly, e.g. gpubox")
+        .option("--fleet-peers");
+    binder.field("fleet_interfaces", fleet_interfaces, "network interfaces to the fleet; none: all")
+        .option("--fleet-interface");
+    binder
+        .field("fleet_discovery_server", fleet_discovery_server,
+               "HOST:PORT of a Fast DDS Discovery Server of the fleet")
+        .option("--fleet-discovery-server");
+    binder.field("fleet_dds", fleet_dds, "DDS implementation of the fleet's side; empty: the robot's")
+        .option("--fleet-dds");
   }
 };
 
@@ -47,7 +59,7 @@ class LinkService {
   static constexpr const char* kDescription =
       "Pass a robot's poses, images and detections to and from a fleet's domain";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Joins both domains. Throws ConfigError and BusError.
   LinkService(const Config& config, service::Runtime& runtime);

@@ -32,20 +32,7 @@ std::string folder_of(const ServiceConfig& config) {
 
 }  // namespace
 
-void RecorderService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--topics", config.topics, "Patterns of DDS or ROS 2 names: 'rtd/*' /slam/odometry (default: all)");
-  app.add_option("-o,--output", config.output,
-                 "FILE.mcap, or a folder in the layout of rosbag2 (default: rtd_DATE-TIME)");
-  app.add_option("--recordings-dir", config.folder,
-                 "Folder of the recordings that /recorder/start may name; default: that of --output, else the working "
-                 "folder");
-  app.add_option("--split", config.split, "Begin a new file at this size or duration: 500MB, 1GB, 60s, 5min");
-  app.add_option("--compress", config.compression, "none, lz4 or zstd (default none)")
-      ->check(CLI::IsMember({"none", "lz4", "zstd"}));
-  app.add_flag("--force", config.force, "Replace an earlier recording");
-  app.add_flag("--beside", config.beside, "Keep an earlier recording and take the next free name: run.1.mcap");
-  app.add_flag("--wait", config.wait, "Record nothing until the command /recorder/start (rtd call)");
-  app.add_flag("--json", config.json, "Final report as JSON on stdout");
+void RecorderService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
   app.footer(
       "rtd record recover FILE          write what is intact in a damaged or unfinished recording to a new file\n"
       "rtd record join FOLDER -o FILE   join the parts of a split recording\n"

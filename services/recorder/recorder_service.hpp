@@ -7,6 +7,7 @@
 
 #include "common/bus/command_desk.hpp"
 #include "common/io/named_files.hpp"
+#include "common/service/config.hpp"
 #include "services/recorder/recording_session.hpp"
 
 namespace CLI {
@@ -23,7 +24,7 @@ class RecorderService {
   static constexpr const char* kName = "record";
   static constexpr const char* kDescription = "Record topics of any type to MCAP files, byte for byte";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Throws ConfigError when the output cannot be written.
   RecorderService(const Config& config, service::Runtime& runtime);

@@ -35,17 +35,24 @@ struct ServiceConfig {
   bool in_place = false;
 
   void bind(auto& binder) {
-    binder.field("topics", topics, "shell patterns of DDS or ROS 2 names: rt/slam/*, /slam/odometry");
-    binder.field("output", output, "FILE.mcap, or a folder in the layout of rosbag2; empty: rtd_DATE-TIME");
-    binder.field("folder", folder,
-                 "folder of the recordings that recorder/start may name (--recordings-dir); empty: that of output, else "
-                 "$STATE_DIRECTORY, else the working folder");
-    binder.field("split", split, "size or duration after which a new file begins, e.g. 1GB or 60s; empty: one file");
-    binder.choice("compression", compression, {"none", "lz4", "zstd"}, "compression of chunks");
-    binder.field("force", force, "replace an earlier recording");
-    binder.field("beside", beside, "keep an earlier recording and take the next free name: run.1.mcap");
-    binder.field("json", json, "print the final report as JSON on stdout");
-    binder.field("wait", wait, "record nothing until the command recorder/start");
+    binder
+        .field("topics", topics, "shell patterns of DDS or ROS 2 names: 'rt/slam/*', /slam/odometry; empty: all topics")
+        .option("--topics");
+    binder.field("output", output, "FILE.mcap, or a folder in the layout of rosbag2; empty: rtd_DATE-TIME")
+        .option("-o,--output");
+    binder
+        .field("folder", folder,
+               "folder of the recordings that recorder/start may name; empty: that of output, else $STATE_DIRECTORY, "
+               "else the working folder")
+        .option("--recordings-dir");
+    binder.field("split", split, "size or duration after which a new file begins, e.g. 1GB or 60s; empty: one file")
+        .option("--split");
+    binder.choice("compression", compression, {"none", "lz4", "zstd"}, "compression of chunks").option("--compress");
+    binder.field("force", force, "replace an earlier recording").option("--force");
+    binder.field("beside", beside, "keep an earlier recording and take the next free name: run.1.mcap")
+        .option("--beside");
+    binder.field("json", json, "print the final report as JSON on stdout").option("--json");
+    binder.field("wait", wait, "record nothing until the command recorder/start (rtd call)").option("--wait");
     binder.field("queue_mib", queue_mib, {1, 65536},
                  "what may wait for the disk; beyond it the newest message is lost");
     binder.field("chunk_kib", chunk_kib, {1, 65536}, "size at which a chunk ends");

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <sys/prctl.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -49,11 +50,6 @@ std::int64_t signed_time(mcap::Timestamp time) {
   return static_cast<std::int64_t>(std::min<mcap::Timestamp>(time, std::numeric_limits<std::int64_t>::max()));
 }
 
-void require(const char* name, double value, double max) {
-  if (std::isfinite(value) && value >= 0 && value <= max) return;
-  throw ConfigError(fmt::format("{} {}: give a number from 0 to {:g}", name, value, max));
-}
-
 /// "/a (json), /b": the topics, and the encodings that are not CDR.
 std::string text_of(const std::map<mcap::ChannelId, mcap::Channel>& channels) {
   if (channels.empty()) return "no topics";
@@ -63,17 +59,6 @@ std::string text_of(const std::map<mcap::ChannelId, mcap::Channel>& channels) {
     if (!is_cdr(channel)) text += " (" + encoding_of(channel) + ")";
   }
   return text;
-}
-
-/// Throws ConfigError naming the option, the value and what is allowed.
-void validate(const ServiceConfig& config) {
-  if (config.file.empty()) throw ConfigError("name a recording: rtd replay FILE (replay.file)");
-  require("--rate", config.rate, ServiceConfig::kHighestRate);
-  require("--start-offset", config.start_offset_s, ServiceConfig::kLongestS);
-  require("--duration", config.duration_s, ServiceConfig::kLongestS);
-  require("--clock", config.clock_hz, ServiceConfig::kFastestClockHz);
-  require("--wait-readers", config.wait_readers_s, 3600);
-  require("--read-ahead", config.read_ahead_mb, ServiceConfig::kMaxReadAheadMb);
 }
 
 /// How many paced messages may be without an answer; 0: messages go by time.
@@ -89,9 +74,24 @@ std::uint64_t seq_in(std::span<const std::byte> cdr) {
 
 }  // namespace
 
+void ReplayService::add_options(CLI::App& app, std::vector<service::GivenOption>& given) {
+  app.add_flag_function(
+      "--asap",
+      [&given](std::int64_t) {
+        given.push_back({"replay.rate", "--asap", {"0"}});
+      },
+      "As fast as possible: --rate 0");
+  app.get_option("--clock")->expected(0, 1)->default_str("40");
+  app.footer(
+      "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
+      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser (--set viewer.port=...).\nExit code: 0 "
+      "done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
+      "used, 3 the recording is damaged and only its readable part was played");
+}
+
 ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
     : config_(config), runtime_(runtime), window_(window_of(config, runtime.pace)), inbox_(std::make_shared<Inbox>()) {
-  validate(config_);
+  if (config_.file.empty()) throw ConfigError("name a recording: rtd replay FILE (replay.file)");
   if (window_ > 0 && config_.lockstep.empty()) config_.lockstep = kTrackingTopic;
   try {
     open();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/recordings/open.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/replay/input.hpp"
@@ -44,31 +45,42 @@ struct ServiceConfig {
   bool restamp = false;
   bool json = false;
 
-  static constexpr double kHighestRate = 1000, kLongestS = 1e9, kFastestClockHz = 10000;
-  static constexpr int kMaxReadAheadMb = 16384;
-
   void bind(auto& binder) {
-    binder.field("file", file, "recording (MCAP) to play");
-    binder.field("rate", rate, {0, kHighestRate}, "speed, 1 = as recorded, 0 = as fast as possible");
-    binder.field("loop", loop, "start again at the end");
-    binder.field("start_offset_s", start_offset_s, {0, kLongestS}, "where to start, from the first message");
-    binder.field("duration_s", duration_s, {0, kLongestS}, "how much to play, 0 = to the end");
-    binder.field("topics", topics, "play only these topics or patterns; empty = all but rtd/status");
-    binder.field("exclude", exclude, "leave these topics or patterns out");
-    binder.field("remap", remap, "rename topics: old:=new");
-    binder.field("clock_hz", clock_hz, {0, kFastestClockHz}, "rate of /clock, 0 = none");
-    binder.field("pause", pause, "start paused");
-    binder.field("read_ahead_mb", read_ahead_mb, {1, kMaxReadAheadMb}, "how much is read before it is due");
-    binder.field("lockstep", lockstep, "topic whose messages let the next message of paced_topic go");
-    binder.field("paced_topic", paced_topic, "topic that waits for answers; empty = rtd/frame, else rtd/features");
+    constexpr double kLongestS = 1e9;
+    binder.field("file", file, "recording, or the folder with it").option("file");
+    binder.field("rate", rate, {0, 1000}, "speed, 1 = as recorded, 0 = as fast as possible")
+        .option("-r,--rate");
+    binder.field("loop", loop, "start again at the end").option("-l,--loop");
+    binder.field("start_offset_s", start_offset_s, {0, kLongestS}, "start so many seconds after the first message")
+        .option("--start-offset");
+    binder.field("duration_s", duration_s, {0, kLongestS}, "play so many seconds, 0 = to the end").option("--duration");
+    binder
+        .field("topics", topics,
+               "play only these topics or patterns, e.g. rtd/frame '/slam/*'; empty = all but rtd/status")
+        .option("--topics");
+    binder.field("exclude", exclude, "leave these topics or patterns out").option("--exclude");
+    binder.field("remap", remap, "rename topics: old:=new").option("-m,--remap");
+    binder.field("clock_hz", clock_hz, {0, 10000}, "rate of /clock, 0 = none, 40 without a number")
+        .option("--clock");
+    binder.field("pause", pause, "start paused (space continues)").option("-p,--pause,--start-paused");
+    binder.field("read_ahead_mb", read_ahead_mb, {1, 16384}, "megabytes read before they are due")
+        .option("--read-ahead");
+    binder.field("lockstep", lockstep, "topic whose messages let the next message of paced_topic go, e.g. rtd/tracking")
+        .option("--lockstep");
+    binder.field("paced_topic", paced_topic, "topic that waits for answers; empty = rtd/frame, else rtd/features")
+        .option("--paced-topic");
     binder.field("asap_window", asap_window, {1, 3}, "messages without an answer at a time, pace asap");
     binder.field("resend_after_ms", resend_after_ms, {10, 60000}, "silence after which messages are sent again");
     binder.field("result_timeout_s", result_timeout_s, {0.1, 3600}, "silence after which the replay has failed");
-    binder.field("wait_for", wait_for, "services that must be ready before the first message");
+    binder.field("wait_for", wait_for, "services that must be ready before the first message").option("--wait-for");
     binder.field("start_timeout_s", start_timeout_s, {0, 3600}, "longest wait for these services and for the answers");
-    binder.field("wait_readers_s", wait_readers_s, {0, 3600}, "longest wait for readers of reliable topics");
-    binder.field("stand_in", stand_in, "services to send heartbeats for, e.g. detector: others rely on its messages");
-    binder.field("restamp", restamp, "set published_ns of our frames and features to the time of the replay");
+    binder.field("wait_readers_s", wait_readers_s, {0, 3600}, "longest wait for readers of reliable topics, s")
+        .option("--wait-readers");
+    binder.field("stand_in", stand_in, "services to send heartbeats for, e.g. detector: others rely on its messages")
+        .option("--stand-in");
+    binder.field("restamp", restamp, "set published_ns of our frames and features to the time of the replay")
+        .option("--restamp");
+    binder.field("json", json, "print a report in JSON at the end").option("--json");
   }
 };
 
@@ -78,7 +90,7 @@ class ReplayService final : public PlayerHost {
   static constexpr const char* kName = "replay";
   static constexpr const char* kDescription = "Replay a recording (MCAP)";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Opens the recording and its topics; throws ConfigError when they cannot be used.
   ReplayService(const Config& config, service::Runtime& runtime);

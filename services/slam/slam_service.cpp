@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <numbers>
@@ -41,32 +40,6 @@ void yield_to_tracking() {
 }
 
 }  // namespace
-
-void SlamService::add_options(CLI::App& app, Config& config) {
-  const auto last = CLI::MultiOptionPolicy::TakeLast;  // a supervisor adds its own behind those of the first start
-  app.add_option("--out", config.out_dir, "Folder for trajectory.txt, keyframes.txt and map.ply (slam.out)");
-  app.add_option("--map", config.map.load, "Map file to continue with (slam.map.load)")->multi_option_policy(last);
-  app.add_option("--save-map", config.map.save, "Map file to write at the end and at checkpoints (slam.map.save)")
-      ->multi_option_policy(last);
-  app.add_option("--maps-dir", config.map.folder,
-                 "Folder of the maps that /slam/save_map and /slam/load_map may name; default: that of --save-map, else "
-                 "--out (slam.map.folder)");
-  app.add_option("--base-frame", config.base.frame, "Frame of the robot, with --camera-in-base (slam.base.frame)");
-  app.add_option(
-      "--camera-in-base", config.base.camera,
-      "Where the camera's optical frame is in the base: x,y,z,qx,qy,qz,qw, or tf: as rt/tf_static says; poses are "
-      "then those of the base, in a map with z up (slam.base.camera)");
-  app.add_option("--gravity", config.base.gravity,
-                 "What is up in a new map: level (as the base stands when it begins), floor (that the camera sees) or "
-                 "imu (slam.base.gravity)")
-      ->transform([](const std::string& name) { return name == "told" ? std::string("level") : name; })
-      ->check(CLI::IsMember({"level", "floor", "imu"}));
-  app.add_option("--imu", config.motion.imu, "Topic of an IMU beside the camera, sensor_msgs/Imu (slam.imu.topic)");
-  app.add_option("--wheel-odometry", config.motion.wheels,
-                 "Topic of the wheels' odometry, nav_msgs/Odometry; with --camera-in-base (slam.wheel.topic)");
-  app.add_flag("--localize-only", config.core.localize_only,
-               "Find poses in the map of --map and leave it as it is (slam.map.localize_only)");
-}
 
 SlamService::SlamService(const Config& config, service::Runtime& runtime)
     : config_(with_mount(config, runtime)),
@@ -151,8 +124,7 @@ void SlamService::forget_map() {
 service::ExitCode SlamService::run() {
   commands_.emplace(
       runtime_.bus, config_.map, maps_folder(config_, service::state_folder(service::process_environment())), slam_,
-      map_keeper_,
-      [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
+      map_keeper_, [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();

@@ -21,10 +21,6 @@
 #include "services/slam/slam_commands.hpp"
 #include "services/slam/slam_publisher.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace rtd::slam {
 
 /// Features in, poses out. Every feature frame is answered by one TrackingResult, after the keyframe events that belong
@@ -35,7 +31,6 @@ class SlamService {
   static constexpr const char* kName = "slam";
   static constexpr const char* kDescription = "Finds the camera's pose and maps the static world from features";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
 
   SlamService(const Config& config, service::Runtime& runtime);
   ~SlamService();

@@ -136,7 +136,7 @@ int run_call(const CallRequest& request, std::ostream& out, std::ostream& err) {
   return service::report_errors<service::ConfigError, bus::BusError>("rtd call", err, [&] {
     if (!request.list && request.service.empty())
       throw service::ConfigError("name a command, e.g. /slam/reset; 'rtd call --list' shows what there is");
-    const bus::BusOptions options = service::load_bus_options(request.bus, {}, "rtd-call");
+    const bus::BusOptions options = service::load_bus_options(request.bus, "rtd-call");
     return request.list ? list(request, options, out, err) : call_or_report(request, options, out, err);
   });
 }

@@ -15,7 +15,7 @@ namespace rtd::topics {
 
 /// The command line of `rtd call`.
 struct CallRequest {
-  service::BusArguments bus;
+  service::ConfigSources bus;
   std::string service, argument;
   double timeout_s = 10;
   bool list = false, json = false;

@@ -14,7 +14,7 @@ namespace rtd::topics {
 /// The command line of `rtd topics`.
 struct TopicsRequest {
   std::string action;  ///< list, hz, echo
-  service::BusArguments bus;
+  service::ConfigSources bus;
   std::vector<std::string> topics;  ///< hz: empty = all; echo: one, or a recording and its topics. ROS or DDS names
   double wait_s = 6;                ///< list: longest search
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C or the end of the recording

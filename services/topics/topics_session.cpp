@@ -19,8 +19,8 @@ bool is_called(const bus::RawTopic& topic, const std::string& name) {
   return topic.name == name || ros2::ros_topic(topic.name) == name || ros2::ros_topic(topic.name) == '/' + name;
 }
 
-TopicsSession::TopicsSession(const service::BusArguments& arguments)
-    : options_(service::load_bus_options(arguments, {}, "rtd-topics")), bus_(bus::connect_raw(options_)) {}
+TopicsSession::TopicsSession(const service::ConfigSources& sources)
+    : options_(service::load_bus_options(sources, "rtd-topics")), bus_(bus::connect_raw(options_)) {}
 
 bool TopicsSession::continues(std::chrono::milliseconds moment) {
   pollfd descriptor{signals_.fd(), POLLIN, 0};

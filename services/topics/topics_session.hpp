@@ -25,7 +25,7 @@ class TopicsSession {
   using Clock = std::chrono::steady_clock;
 
   /// Throws ConfigError and BusError.
-  explicit TopicsSession(const service::BusArguments& arguments);
+  explicit TopicsSession(const service::ConfigSources& sources);
 
   bus::RawBus& bus() { return *bus_; }
   /// Waits a moment for a signal; false from the first signal on.

@@ -60,8 +60,8 @@ WebOptions web_options(const ServiceConfig& config, const std::string& token) {
   WebOptions options;
   options.address = config.bind_address;
   options.port = static_cast<std::uint16_t>(config.port);
-  options.access = {.hosts = config.hosts, .origins = config.origins, .token = token,
-                    .look_freely = look_freely(config)};
+  options.access = {
+      .hosts = config.hosts, .origins = config.origins, .token = token, .look_freely = look_freely(config)};
   if (is_loopback(config.bind_address) && options.access.hosts.empty()) options.access.hosts = {"localhost"};
   if (config.publish) options.longest_message_bytes = 16U << 20U;
   return options;
@@ -108,20 +108,7 @@ std::string seek_argument(const Played& played, std::uint64_t to_ns) {
 
 }  // namespace
 
-void ViewerService::add_options(CLI::App& app, Config& config) {
-  app.add_option("--port", config.port, "Port; 0: any free one")->check(CLI::Range(0, 65535))->capture_default_str();
-  app.add_option("--bind", config.bind_address, "Address to listen on; 0.0.0.0: all interfaces, with a token")
-      ->capture_default_str();
-  app.add_option("--token", config.token,
-                 "Asked of every client. Without it one is made up, and on loopback it is asked only for commands");
-  app.add_option("--host", config.hosts, "Further names by which browsers may address this host")->delimiter(',');
-  app.add_option("--origin", config.origins, "Sites whose pages may connect, e.g. a Foxglove of your own")
-      ->delimiter(',');
-  app.add_option("--topics", config.topics, "Topics or patterns that Foxglove clients are offered, e.g. '/slam/*'")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_flag("--read-only", config.read_only, "No buttons: clients cannot call commands");
-  app.add_flag("--publish", config.publish, "Foxglove clients may publish messages");
+void ViewerService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
   app.footer("Open the printed address in a browser, or ws://HOST:PORT in Foxglove (docs/viewer.md).");
 }
 
@@ -145,8 +132,8 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
              .now_ms = wall_clock_ms}) {
   try {
     server_.emplace(
-        web_options(config_, token_), site_, [this](const std::string& subprotocol, Rights rights) { return open(subprotocol, rights); },
-        reports());
+        web_options(config_, token_), site_,
+        [this](const std::string& subprotocol, Rights rights) { return open(subprotocol, rights); }, reports());
   } catch (const WebError& error) {
     throw ConfigError(error.what());
   }
@@ -318,7 +305,10 @@ void ViewerService::print_address() const {
   const std::string token = token_.empty() ? "" : "?token=" + token_;
   std::cout << fmt::format("viewer: http://{}/{}   Foxglove: ws://{}/{}\n", place, token, place, token) << std::flush;
   SPDLOG_INFO("event=listening address={} port={} token={} commands={}", config_.bind_address, server_->port(),
-              token_.empty() ? "none" : look_freely(config_) ? "for commands" : "asked", config_.read_only ? "off" : "on");
+              token_.empty()         ? "none"
+              : look_freely(config_) ? "for commands"
+                                     : "asked",
+              config_.read_only ? "off" : "on");
 }
 
 service::ExitCode ViewerService::run() {

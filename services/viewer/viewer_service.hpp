@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/viewer/command_caller.hpp"
@@ -40,15 +41,18 @@ struct ServiceConfig {
   double image_hz = 10;
 
   void bind(auto& binder) {
-    binder.field("bind", bind_address, "address to listen on (--bind)");
-    binder.field("port", port, {0, 65535}, "port; 0: any free one (--port)");
-    binder.field("token", token, "asked of every client (--token); empty: one is made up, on loopback it is asked only for "
-                 "commands");
-    binder.field("hosts", hosts, "names by which browsers may address this host (--host)");
-    binder.field("origins", origins, "sites whose pages may connect (--origin)");
-    binder.field("topics", topics, "patterns of topics that Foxglove clients are offered");
-    binder.field("read_only", read_only, "no buttons: clients cannot call commands (--read-only)");
-    binder.field("publish", publish, "Foxglove clients may publish (--publish)");
+    binder.field("bind", bind_address, "address to listen on; 0.0.0.0: all interfaces, with a token").option("--bind");
+    binder.field("port", port, {0, 65535}, "port; 0: any free one").option("--port");
+    binder
+        .field("token", token,
+               "asked of every client; empty: one is made up, and on loopback it is asked only for commands")
+        .option("--token");
+    binder.field("hosts", hosts, "further names by which browsers may address this host").option("--host");
+    binder.field("origins", origins, "sites whose pages may connect, e.g. a Foxglove of your own").option("--origin");
+    binder.field("topics", topics, "topics or patterns that Foxglove clients are offered, e.g. '/slam/*'")
+        .option("--topics");
+    binder.field("read_only", read_only, "no buttons: clients cannot call commands").option("--read-only");
+    binder.field("publish", publish, "Foxglove clients may publish messages").option("--publish");
     binder.field("max_kbps", max_kbps, {10, 1e6}, "kB/s that a page gets at most");
     binder.field("image_hz", image_hz, {0.1, 60}, "images per second that a page gets at most");
   }
@@ -61,7 +65,7 @@ class ViewerService {
   static constexpr const char* kName = "viewer";
   static constexpr const char* kDescription = "Show poses, map, images and the state of all services in a browser";
   using Config = ServiceConfig;
-  static void add_options(CLI::App& app, Config& config);
+  static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 
   /// Listens and joins the domain. Throws ConfigError and BusError.
   ViewerService(const Config& config, service::Runtime& runtime);

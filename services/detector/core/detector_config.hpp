@@ -7,8 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "common/msg/engine_names.hpp"
-
 namespace rtd::detector {
 
 /// Size of one anchor in pixels of the network's input.
@@ -53,7 +51,6 @@ struct DetectorConfig {
     binder.field("input_height_px", input_height_px, {32, 4096}, "network input, when the file does not fix it");
     decode.bind(binder);
     binder.field("threads", threads, {1, 64}, "CPU threads of the network (OpenCV's, for the whole process)");
-    binder.field("engine", engine, std::string("what computes the network: ") + msg::kEngineNames);
     binder.field("class_names", class_names,
                  "names in the order of the network's classes; empty: those in the file, else COCO's");
   }

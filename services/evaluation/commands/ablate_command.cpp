@@ -118,7 +118,7 @@ constexpr char kTaskFile[] = "variant.json";
 nlohmann::json settings_of(const AblateOptions& options, const VariantTask& task) {
   return {{"version", RTD_VERSION},       {"source", task.source},
           {"mode", task.variant.mode},    {"settings", task.variant.settings},
-          {"set", options.overrides},     {"config", options.config_file},
+          {"set", options.config.overrides},     {"config", options.config.file},
           {"pace", options.pace},         {"frames", options.frames},
           {"detector", options.detector}, {"model", options.model}};
 }
@@ -132,14 +132,12 @@ std::vector<std::string> run_command(const AblateOptions& options, const Variant
   add("--out", folder.string());
   add("--pace", options.pace);
   add("--filter", task.variant.mode);
-  add("--config", options.config_file);
   add("--detector", options.detector);
   add("--model", options.model);
   if (options.frames > 0) add("--frames", std::to_string(options.frames));
-  for (const std::string& assignment : options.overrides) add("--set", assignment);
+  const std::vector<std::string> sources = service::to_command_line(options.config);
+  command.insert(command.end(), sources.begin(), sources.end());
   for (const std::string& assignment : task.variant.settings) add("--set", assignment);
-  const std::vector<std::string> bus = service::to_command_line(options.bus);
-  command.insert(command.end(), bus.begin(), bus.end());
   command.emplace_back("--quiet");
   return command;
 }
@@ -282,10 +280,8 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
       ->delimiter(',');
   command->add_option("--out", options.out_dir, "Folder for all runs and ablation.html")->capture_default_str();
   command->add_option("--frames", options.frames, "End each run after so many frames");
-  service::add_bus_options(*command, options.bus);
-  command->add_option("--config", options.config_file, "YAML file with a section per service")
-      ->check(CLI::ExistingFile);
-  command->add_option("--set", options.overrides, "Override one key in every run (repeatable)");
+  service::add_source_options(*command, options.config);
+  service::add_bus_options(*command, options.config);
   command->add_option("--detector", options.detector, "auto: when weights are found; off: modes that need none")
       ->check(CLI::IsMember({"auto", "off"}))
       ->capture_default_str();

@@ -23,9 +23,8 @@ struct AblateOptions {
   std::vector<std::string> modes;    ///< empty: all
   std::vector<std::string> without;  ///< techniques to switch off, each alone; empty: all; "none"
   std::string out_dir = "rtd_ablation";
-  service::BusArguments bus;
-  std::string config_file, detector = "auto", model;
-  std::vector<std::string> overrides;
+  service::ConfigSources config;
+  std::string detector = "auto", model;
   std::uint64_t frames = 0;  ///< of each run; 0 = all
   bool json = false;         ///< JSON on standard output instead of the table
   bool resume = false;       ///< keep finished runs of the same settings in out_dir

@@ -68,8 +68,8 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
   RunOptions run_options;
   run_options.source = source;
   run_options.pace = "lockstep";
-  run_options.filter_mode = mode;
-  run_options.bus = options.bus;
+  run_options.config = options.config;
+  run_options.config.given.push_back({"filter.mode", "--filter", {mode}});
   run_options.frames = options.frames;
   run_options.out_dir = (fs::path(options.out_dir) / mode).string();
   return run(run_options);

@@ -13,7 +13,7 @@ namespace rtd::launcher {
 struct DemoOptions {
   std::string dataset;  ///< TUM sequence to download; empty: RTD_DATA_DIR's walk_xyz, else the synthetic office
   std::string out_dir = "rtd-demo";
-  service::BusArguments bus;
+  service::ConfigSources config;
   std::uint64_t frames = 0;
 };
 

@@ -182,7 +182,7 @@ int clean(std::ostream& out) {
 
 int check_all(const DoctorOptions& options, std::ostream& out) {
   if (options.clean) return clean(out);
-  const bus::BusOptions bus = service::load_bus_options(options.bus, options.config, "rtd-doctor");
+  const bus::BusOptions bus = service::load_bus_options(options.config, "rtd-doctor");
   Findings findings;
   check_services(findings);
   check_leftovers(findings);

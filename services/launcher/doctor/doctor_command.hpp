@@ -24,8 +24,7 @@ using Findings = std::vector<Finding>;
 
 struct DoctorOptions {
   bool clean = false;  ///< only remove what killed processes left in /dev/shm, and list what was removed and what stays
-  service::BusArguments bus;      ///< how the services will join the bus
-  service::ConfigSources config;  ///< the same as theirs
+  service::ConfigSources config;  ///< how the services will join the bus
 };
 
 /// `rtd doctor`: one line per check (ok, warn, FAIL), each problem with the command that fixes it. Returns 0 when a

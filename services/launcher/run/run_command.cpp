@@ -51,7 +51,7 @@ void print_setup(const RunSetup& setup, Terminal& terminal) {
   if (!setup.weights_advice.empty()) terminal.warn("rtd: geometry only: " + setup.weights_advice);
   terminal.print(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
                              setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
-                             setup.filter_mode,
+                             setup.services.filter_mode,
                              setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
                              setup.bus_options.vendor, setup.bus_options.domain));
 }

@@ -202,7 +202,7 @@ run_record::RunRecord RunSession::record() const {
   record.version = RTD_VERSION;
   record.source = setup_.source;
   record.pace = setup_.pace;
-  record.filter_mode = setup_.filter_mode;
+  record.filter_mode = setup_.services.filter_mode;
   record.dds = setup_.bus_options.vendor;
   record.detector = setup_.detector_note;
   record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;

@@ -4,13 +4,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
@@ -48,8 +46,9 @@ void load_config(RunSetup& setup) {
   service::ConfigBinder binder;
   binder.section("bus", bus);
   binder.section("launcher", setup.launcher);
-  check_sections(setup.overrides);
-  service::load_config(binder, setup.bus, {setup.config_file, setup.overrides});
+  setup.services.bind(binder);
+  check_sections(setup.config.overrides);
+  service::load_config(binder, setup.config);
   setup.bus_options = service::to_bus_options(bus, "rtd");
 }
 
@@ -78,34 +77,6 @@ void choose_vendors(RunSetup& setup) {
   }
 }
 
-/// The value of another service's key as that service will see it; empty when neither --set nor the file names it.
-std::string peek(const RunOptions& options, const std::string& section, const std::string& key) {
-  const std::string prefix = section + "." + key + "=";
-  for (auto assignment = options.overrides.rbegin(); assignment != options.overrides.rend(); ++assignment) {
-    if (assignment->starts_with(prefix)) return assignment->substr(prefix.size());
-  }
-  if (options.config_file.empty()) return {};
-  try {
-    YAML::Node node = YAML::LoadFile(options.config_file)[section];
-    if (node[key]) return node[key].as<std::string>();
-    std::istringstream parts(key);  // "base.camera" may also be a section of its own
-    for (std::string part; std::getline(parts, part, '.');) node.reset(node[part]);
-    return node.as<std::string>();
-  } catch (const YAML::Exception&) {
-    return {};  // the service that owns the key reports the error
-  }
-}
-
-std::string choose_filter_mode(const RunOptions& options) {
-  std::string mode = options.filter_mode.empty() ? peek(options, "filter", "mode") : options.filter_mode;
-  if (mode.empty()) mode = "rtd";
-  if (msg::find_filter_mode(mode) == nullptr) {
-    throw ConfigError(
-        fmt::format("--filter: unknown mode '{}', use one of {}", mode, fmt::join(msg::filter_mode_names(), ", ")));
-  }
-  return mode;
-}
-
 std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   if (camera::is_live(uri)) {
     camera::check_live_uri(uri);
@@ -121,8 +92,8 @@ void choose_detector(RunSetup& setup) {
     setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
     return;
   }
-  if (msg::find_filter_mode(setup.filter_mode)->boxes == msg::BoxUse::kNone) {
-    setup.detector_note = "off (filter mode " + setup.filter_mode + ")";
+  if (msg::find_filter_mode(setup.services.filter_mode)->boxes == msg::BoxUse::kNone) {
+    setup.detector_note = "off (filter mode " + setup.services.filter_mode + ")";
     return;
   }
   if (setup.detector == "off") {
@@ -139,8 +110,8 @@ void choose_detector(RunSetup& setup) {
     setup.detector_note = "on another host";
     return;
   }
-  std::string configured = setup.model.empty() ? peek(setup, "detector", "model") : setup.model;
-  if (!setup.model.empty() && fs::is_regular_file(setup.model)) configured = fs::absolute(setup.model).string();
+  std::string configured = setup.services.model;
+  if (!configured.empty() && fs::is_regular_file(configured)) configured = fs::absolute(configured).string();
   const service::ModelSearch model = service::find_model(configured, service::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
@@ -154,27 +125,24 @@ ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole rol
   const auto add = [&plan](const std::vector<std::string>& words) {
     plan.command.insert(plan.command.end(), words.begin(), words.end());
   };
-  service::BusArguments bus = setup.bus;
-  if (const auto own = setup.vendors_of.find(name); own != setup.vendors_of.end()) bus.vendor = own->second;
-  add(service::to_command_line(bus));
-  if (!setup.config_file.empty()) add({"--config", setup.config_file});
-  for (const std::string& assignment : setup.overrides) add({"--set", assignment});
+  add(service::to_command_line(setup.config));
+  if (const auto own = setup.vendors_of.find(name); own != setup.vendors_of.end()) add({"--dds", own->second});
+  add(service::to_command_line(setup.config.given, name));
   add(own_arguments);
   return plan;
 }
 
 void choose_map(RunSetup& setup) {
-  if (!setup.map.empty() && fs::is_directory(setup.map))
-    throw ConfigError("--map " + setup.map + ": this is a folder: name a map file in it");
-  if (!setup.map.empty() && !fs::is_regular_file(setup.map)) throw ConfigError("--map " + setup.map + ": no such file");
-  if (setup.localize_only && setup.map.empty())
+  service::MapFileConfig& map = setup.services.map;
+  if (!map.load.empty() && fs::is_directory(map.load))
+    throw ConfigError("--map " + map.load + ": this is a folder: name a map file in it");
+  if (!map.load.empty() && !fs::is_regular_file(map.load)) throw ConfigError("--map " + map.load + ": no such file");
+  if (setup.services.localize_only && map.load.empty())
     throw ConfigError("--localize-only needs a map: give its file with --map");
-  if (setup.localize_only && !setup.save_map.empty())
-    throw ConfigError("--save-map " + setup.save_map + ": with --localize-only the map does not change");
-  if (setup.save_map.empty()) setup.save_map = peek(setup, "slam", "map.save");
-  setup.save_map_asked = !setup.save_map.empty();
-  const bool map_stays = setup.localize_only || peek(setup, "slam", "map.localize_only") == "true";
-  if (setup.save_map.empty() && !map_stays) setup.save_map = setup.out_dir + "/map.rtdmap";
+  if (setup.services.localize_only && !map.save.empty())
+    throw ConfigError("--save-map " + map.save + ": with --localize-only the map does not change");
+  setup.save_map_asked = !map.save.empty();
+  if (map.save.empty() && !setup.services.localize_only) map.save = setup.out_dir + "/map.rtdmap";
 }
 
 /// A restarted slam continues with the map of its last checkpoint. A file of an earlier run does not count.
@@ -194,39 +162,21 @@ std::function<std::vector<std::string>()> load_checkpoint(const std::string& sav
 
 std::vector<std::string> slam_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--out", setup.out_dir};
-  if (!setup.map.empty()) arguments.insert(arguments.end(), {"--map", setup.map});
-  if (!setup.save_map.empty()) arguments.insert(arguments.end(), {"--save-map", setup.save_map});
-  if (!setup.maps_dir.empty()) arguments.insert(arguments.end(), {"--maps-dir", setup.maps_dir});
-  if (!setup.base_frame.empty()) arguments.insert(arguments.end(), {"--base-frame", setup.base_frame});
-  if (!setup.camera_in_base.empty()) arguments.push_back("--camera-in-base=" + setup.camera_in_base);
-  if (!setup.gravity.empty()) arguments.insert(arguments.end(), {"--gravity", setup.gravity});
-  if (!setup.imu.empty()) arguments.insert(arguments.end(), {"--imu", setup.imu});
-  if (!setup.wheel_odometry.empty()) arguments.insert(arguments.end(), {"--wheel-odometry", setup.wheel_odometry});
-  if (setup.localize_only) arguments.emplace_back("--localize-only");
+  const std::string& save = setup.services.map.save;
+  if (!save.empty()) arguments.insert(arguments.end(), {"--save-map", save});
   return arguments;
 }
 
 /// With the base of the robot slam's map has z up.
 std::vector<std::string> dense_arguments(const RunSetup& setup) {
   std::vector<std::string> arguments = {"--out", setup.out_dir};
-  const std::string gravity = setup.gravity.empty() ? peek(setup, "slam", "base.gravity") : setup.gravity;
-  const bool turned = !gravity.empty() && gravity != "level" && gravity != "told";  // `told`: former name of `level`
-  const bool z_up = !setup.camera_in_base.empty() || !peek(setup, "slam", "base.camera").empty() || turned;
-  if (z_up && peek(setup, "dense", "grid.up").empty()) arguments.emplace_back("--up=0,0,1");
-  return arguments;
-}
-
-std::vector<std::string> detector_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments = {"--set", "detector.model=" + setup.model_path};
-  if (!setup.engine.empty()) arguments.insert(arguments.end(), {"--engine", setup.engine});
+  if (setup.services.base.z_up() && setup.services.up.empty()) arguments.emplace_back("--up=0,0,1");
   return arguments;
 }
 
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments = {"--set", "filter.mode=" + setup.filter_mode};
-  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector)
-    arguments.insert(arguments.end(), {"--set", "filter.detector=off"});
-  return arguments;
+  if (!setup.model_path.empty() || setup.replay.detections || setup.remote_detector) return {};
+  return {"--set", "filter.detector=off"};
 }
 
 std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vector<std::string>& wait_for) {
@@ -249,15 +199,31 @@ void check_trace_file(const std::string& path) {
 
 }  // namespace
 
+void ServiceSettings::bind(service::ConfigBinder& binder) {
+  using Part = service::ConfigBinder;
+  binder.part_of_section("filter", [this](Part& filter) { service::bind_filter_mode(filter, filter_mode); });
+  binder.part_of_section("detector", [this](Part& detector) {
+    service::bind_model(detector, model);
+    service::bind_engine(detector, engine);
+  });
+  binder.part_of_section("slam", [this](Part& slam) {
+    slam.section("map", map);
+    service::bind_localize_only(slam, localize_only);
+    slam.section("base", base);
+    motion.bind(slam);
+  });
+  binder.part_of_section("dense", [this](Part& dense) { dense.field("grid.up", up, "what points up"); });
+}
+
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup(options);
   load_config(setup);
   choose_vendors(setup);
   setup.pace = service::to_string(service::parse_pace(setup.pace));
-  setup.filter_mode = choose_filter_mode(setup);
   setup.source = camera::complete_uri(setup.source);
   setup.replay = choose_replay(setup, setup.bus_options.robot);
-  if (setup.replay) setup.bus.robot = setup.bus_options.robot = setup.replay.robot;
+  if (setup.replay) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
+  if (setup.replay) setup.bus_options.robot = setup.replay.robot;
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
   choose_detector(setup);
   choose_map(setup);
@@ -272,7 +238,7 @@ void clear_out_dir(const RunSetup& setup) {
   io::remove_unfinished(out_dir);
   std::error_code error;
   const fs::path map = out_dir / "map.rtdmap";
-  const bool needed = !setup.map.empty() && fs::equivalent(setup.map, map, error);  // --map of an earlier run here
+  const bool needed = !setup.services.map.load.empty() && fs::equivalent(setup.services.map.load, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
   for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
@@ -293,10 +259,10 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
     plans.back().ends_last = true;
   }
-  if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, detector_arguments(setup)));
+  if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--model=" + setup.model_path}));
   if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, slam_arguments(setup)));
-  plans.back().when_restarted = load_checkpoint(setup.save_map);
+  plans.back().when_restarted = load_checkpoint(setup.services.map.save);
   if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, dense_arguments(setup)));
   std::vector<std::string> wait_for;
   for (ServicePlan& service : plans) {

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/msg/filter_modes.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
+#include "common/service/run_settings.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 
 namespace rtd::launcher {
@@ -50,27 +52,29 @@ struct LauncherConfig {
   }
 };
 
+/// What `rtd run` knows of the settings of services: they are options of its own, which it forwards.
+struct ServiceSettings {
+  std::string filter_mode = msg::kFilterModes.back().name;
+  std::string model;   ///< ONNX file; empty: search
+  std::string engine;  ///< of the detector
+  service::MapFileConfig map;
+  bool localize_only = false;
+  service::BaseConfig base;
+  service::MotionTopics motion;
+  std::string up;  ///< of dense
+
+  /// As parts of the services' sections.
+  void bind(service::ConfigBinder& binder);
+};
+
 /// The command line of `rtd run`.
 struct RunOptions {
   std::string source;
   std::string pace = "realtime";
-  std::string filter_mode;  ///< one of msg::kFilterModes; empty: configuration, default rtd
-  service::BusArguments bus;
-  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
-  std::string config_file;
-  std::vector<std::string> overrides;  ///< "key=value" for any service
+  service::ConfigSources config;     ///< for any service, with the options of services
+  std::vector<std::string> dds_of;   ///< "SERVICE=VENDOR": another DDS for one service
   std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
-  std::string model;              ///< ONNX file; empty: search
-  std::string engine;             ///< of the detector; empty: as configured
   std::string out_dir;
-  std::string map;                         ///< map file to continue; empty: a new map
-  std::string save_map;                    ///< map file to write; empty: map.rtdmap in out_dir
-  std::string maps_dir;                    ///< of maps that commands name; empty: as slam chooses
-  std::string base_frame;                  ///< of the robot; empty: as configured
-  std::string camera_in_base;              ///< x,y,z,qx,qy,qz,qw or tf; empty: as configured
-  std::string gravity;                     ///< level, floor or imu; empty: as configured
-  std::string imu, wheel_odometry;         ///< ROS topics; empty: as configured
-  bool localize_only = false;              ///< leave the map as it is
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser
   std::string trace;                       ///< write what each service did when into this file; empty = no
@@ -99,12 +103,12 @@ struct ReplaySetup {
 /// robots, options that need a camera.
 ReplaySetup choose_replay(const RunOptions& options, const std::string& robot);
 
-/// A checked run: its options, completed (the source as a URI, the filter mode, the map file that slam writes or none),
-/// and what follows from them.
+/// A checked run: its options, completed (the source as a URI), and what follows from them.
 struct RunSetup : RunOptions {
   explicit RunSetup(const RunOptions& options) : RunOptions(options) {}
 
   LauncherConfig launcher;
+  ServiceSettings services;                       ///< in force, completed: the map file that slam writes, or none
   bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless

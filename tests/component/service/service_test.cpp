@@ -192,7 +192,7 @@ class RunServiceTest : public ::testing::Test {
  protected:
   struct Config {
     int count = 3;
-    void bind(ConfigBinder& binder) { binder.field("count", count, {1, 10}, "how many"); }
+    void bind(ConfigBinder& binder) { binder.field("count", count, {1, 10}, "how many").option("--count"); }
   };
 
   int run(std::vector<std::string> arguments) {
@@ -201,7 +201,6 @@ class RunServiceTest : public ::testing::Test {
     argv.reserve(arguments.size());
     for (std::string& argument : arguments) argv.push_back(argument.data());
     return run_service({"filter", "A service for tests",
-                        [this](CLI::App& app) { app.add_option("--count", config_.count, "how many"); },
                         [this](ConfigBinder& binder) { binder.section("filter", config_); },
                         [this](Runtime& runtime) { return body_(runtime); }},
                        static_cast<int>(argv.size()), argv.data());

@@ -31,12 +31,16 @@ class Topics : public ::testing::TestWithParam<std::string> {
     static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
     options_.vendor = GetParam();
     options_.domain = domain++;
-    request_.bus.vendor = options_.vendor;
-    request_.bus.domain = static_cast<int>(options_.domain);
+    choose_domain(options_.domain);
   }
   ~Topics() override {
     ended_ = true;
     if (thread_.joinable()) thread_.join();
+  }
+
+  void choose_domain(std::uint32_t domain) {
+    request_.bus.given = {{"bus.vendor", "--dds", {options_.vendor}},
+                          {"bus.domain", "--domain", {std::to_string(domain)}}};
   }
 
   /// A pose 50 times a second, until the end of the test, and what is latched.
@@ -105,7 +109,7 @@ TEST_P(Topics, of_an_empty_domain_are_none_and_the_message_says_where) {
 
 TEST_P(Topics, of_another_domain_are_hinted_at) {
   publish();
-  request_.bus.domain = static_cast<int>(options_.domain + 1);
+  choose_domain(options_.domain + 1);
   request_.wait_s = 0.3;
   EXPECT_EQ(run("list"), service::kRunFailed);
   EXPECT_THAT(err_.str(),

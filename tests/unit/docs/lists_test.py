@@ -3,7 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that each list stands once in the code, and that the copies which people read agree with it.
 
-The lists: filter modes, services, schemes of sources, names of metrics, and how the forms of recordings begin and end.
+The lists: filter modes, services, schemes of sources, names of metrics, how the forms of recordings begin and end, and
+the options that several processes take.
 Tests are not searched: they write out what they expect.
 """
 import pathlib
@@ -14,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 MODES, SERVICES = "common/msg/filter_modes.hpp", "common/msg/services.hpp"
 SCHEMES = "common/camera/source_schemes.hpp"
 METRICS, FORMS = "common/service/metric_names.hpp", "common/io/recording_forms.hpp"
+OPTIONS = ("common/service/run_settings.hpp", "common/service/bus_config.hpp", "common/bus/bus_factory.hpp")
 SOURCES = sorted(path.relative_to(ROOT).as_posix() for folder in ("common", "services")
                  for path in (ROOT / folder).rglob("*") if path.suffix in (".cpp", ".hpp", ".js", ".in"))
 
@@ -21,6 +23,8 @@ LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 METRIC_CALL = re.compile(r'\b(?:set_metric|find_metric|set_word|word_of|camera_counter)\((?:[^";{]*[,(] ?)?"([^"]*)"|'
                          r'\bmetric_on_this_host\("\w+", "([^"]*)"|^ +set\("([^"]*)"', re.MULTILINE)
 SERVICES_IN_ROW = re.compile(r'"camera",\s*"detector",\s*"filter",\s*"slam"|camera, detector, filter, slam, dense')
+DECLARED = re.compile(r'\.option\("([^"]+)"')
+ADDED = re.compile(r'(?:\.option|add_(?:option|flag)\w*)\(\s*"([^"]+)"')
 FORM = re.compile(r'#ROSBAG V|SQLite format 3|MCAP0|'
                   r'(?:extension\(\) [!=]= |ends_with\()"\.(?:mcap|bag|db3|zstd|zst)"|"\.(?:bag|db3)",\s*"\.')
 
@@ -76,6 +80,17 @@ class Lists(unittest.TestCase):
         self.assertGreaterEqual(len(rows(MODES)), 6)
         self.assertTrue(lists_modes(text_of(MODES)))
         self.assert_none_but(MODES, lists_modes)
+
+    def test_options_of_a_run_are_declared_once(self):
+        """Tools that mean something else by a word are left out: rtd-eval's --model, rtd-keystore's --robot."""
+        shared = [flags for path in OPTIONS for flags in DECLARED.findall(text_of(path))]
+        self.assertIn("--camera-in-base", shared)
+        self.assertEqual(len(shared), len(set(shared)))
+        for path in SOURCES:
+            if path in OPTIONS or path.startswith(("services/evaluation/", "services/keystore/")):
+                continue
+            again = set(shared) & set(ADDED.findall(text_of(path)))
+            self.assertFalse(again, f"{path}: the setting has this option already")
 
     def test_schemes_of_sources_stand_once(self):
         self.assertGreaterEqual(len(rows(SCHEMES)), 8)

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 
 #include "common/service/config.hpp"
@@ -25,10 +26,10 @@ struct Sample {
   std::map<std::string, std::string> levels{{"person", "high"}};
   Nested nested;
   void bind(ConfigBinder& binder) {
-    binder.field("enabled", enabled, "switch");
-    binder.field("count", count, {1, 2048}, "how many");
-    binder.choice("mode", mode, {"off", "rtd"}, "mode", {{"none", "off"}});
-    binder.field("names", names, "list");
+    binder.field("enabled", enabled, "switch").option("--enabled");
+    binder.field("count", count, {1, 2048}, "how many").option("-c,--count", "Numbers");
+    binder.choice("mode", mode, {"off", "rtd"}, "mode", {{"none", "off"}}).option("--mode");
+    binder.field("names", names, "list").option("--names");
     binder.field("levels", levels, "map");
     binder.section("nested", nested);
   }
@@ -157,6 +158,79 @@ TEST_F(ConfigTest, printed_config_loads_to_the_same_values) {
 
 TEST(NearestName, far_words_are_not_suggested) {
   EXPECT_EQ(nearest_name("zebra", {"filter.mode"}), "");
+}
+
+/// A command line with the options of Sample.
+class OptionsTest : public ConfigTest {
+ protected:
+  OptionsTest() { binder_.add_options(app_, given_); }
+  /// What `words` give, applied.
+  void give(std::vector<std::string> words) {
+    app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    for (const GivenOption& option : given_) binder_.set(option);
+  }
+  std::string refused(const std::vector<std::string>& words) {
+    try {
+      give(words);
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+  CLI::App app_{"a service"};
+  std::vector<GivenOption> given_;
+};
+
+TEST_F(OptionsTest, set_keys_of_every_kind) {
+  give({"-c", "7", "--mode", "off", "--names", "x,y", "--enabled=false"});
+  EXPECT_EQ(sample_.count, 7);
+  EXPECT_EQ(sample_.mode, "off") << "a choice takes the word, not what YAML makes of it";
+  EXPECT_THAT(sample_.names, ::testing::ElementsAre("x", "y"));
+  EXPECT_FALSE(sample_.enabled);
+}
+
+TEST_F(OptionsTest, the_last_one_counts) {
+  give({"--count", "7", "--count", "8"});
+  EXPECT_EQ(sample_.count, 8);
+}
+
+TEST_F(OptionsTest, a_value_that_is_not_allowed_names_the_option) {
+  EXPECT_EQ(refused({"--count", "5000"}), "--count 5000 is not allowed: use a whole number from 1 to 2048");
+  given_.clear();
+  EXPECT_EQ(refused({"--mode", "fast"}), "--mode fast is not allowed: use one of off, rtd");
+}
+
+TEST_F(OptionsTest, help_comes_from_the_settings) {
+  EXPECT_THAT(app_.help(), AllOf(HasSubstr("-c,--count INT=1000"), HasSubstr("How many (filter.count)"),
+                                 HasSubstr("Numbers:"), HasSubstr("--mode TEXT:{off,rtd}=rtd")));
+  EXPECT_THAT(app_.help(), ::testing::Not(HasSubstr("nested")));
+}
+
+TEST_F(OptionsTest, are_forwarded_to_the_service_whose_keys_they_are) {
+  give({"--names", "x,y", "--count", "7", "--enabled"});
+  EXPECT_THAT(to_command_line(given_, "filter", {"filter.count"}),
+              ::testing::UnorderedElementsAre("--names=x,y", "--enabled=true"));
+  EXPECT_THAT(to_command_line(given_, "slam"), ::testing::IsEmpty());
+}
+
+TEST(PartOfASection, leaves_the_other_keys_to_the_service) {
+  std::string map;
+  ConfigBinder binder;
+  binder.part_of_section("slam", [&map](ConfigBinder& slam) { slam.field("map.load", map, "map file"); });
+  const std::vector<std::string> sections = {"slam", "filter"};
+  binder.load_text("{slam: {map: {load: a.map, save: b.map}, tracker: {whatever: 1}}, filter: {mode: off}}", "text",
+                   sections);
+  EXPECT_EQ(map, "a.map");
+  binder.set("slam.map.save=c.map", sections);
+  binder.set("slam.map.load=d.map", sections);
+  EXPECT_EQ(map, "d.map");
+}
+
+TEST_F(ConfigTest, keys_of_a_section_are_printed_beside_each_other) {
+  int late = 1;
+  binder_.section("filter.other", sample_.nested);
+  binder_.field("filter.nested.late", late, {0, 2}, "bound last");
+  EXPECT_THAT(binder_.print(), HasSubstr("    depth_m: 4  # reach\n    late: 1  # bound last\n  other:"));
 }
 
 }  // namespace

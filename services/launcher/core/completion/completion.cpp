@@ -21,7 +21,7 @@ struct HelpOption {
 class Help {
  public:
   explicit Help(const std::string& text) {
-    static const std::regex option(R"(^  (?:-\w,)?(--[\w-]+)(?: (\S+)(?: \.\.\.)?(?: REQUIRED)?)?(?:  +(.*))?$)");
+    static const std::regex option(R"(^  (?:-\w,)?(--[\w-]+)(?:,--[\w-]+)*(?: (\S+)(?: \.\.\.)?(?: REQUIRED)?)?(?:  +(.*))?$)");
     static const std::regex subcommand(R"(^  ([a-z][\w-]*)  +\S.*$)");
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) {
