@@ -5,16 +5,27 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "services/filter/core/modes/mode_judge.hpp"
-#include "services/filter/core/movers/tint.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
+
+/// Colours by which moving objects are distinguished: hue in eight parts, pale or strong, and three greys. Brightness
+/// counts only where there is no hue, because light and exposure change it.
+inline constexpr int kTints = 19;
+/// How much of a surface has each tint, sum 1; all 0 = unknown.
+using TintShares = Eigen::Matrix<double, kTints, 1>;
+
+std::uint8_t tint_of(const cv::Vec3b& bgr);
+
+/// Hellinger: 1 - sum sqrt(a b), 0 = the same, 1 = nothing in common; 0 if one of them is unknown.
+double unlike(const TintShares& a, const TintShares& b);
 
 struct SeenPoint {
   Eigen::Vector3d p_camera_m;
