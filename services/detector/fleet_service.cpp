@@ -9,6 +9,9 @@
 #include <thread>
 #include <utility>
 
+#include "common/bus/backend.hpp"
+#include "common/bus/robot.hpp"
+#include "common/bus/topics.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 
@@ -18,6 +21,35 @@ namespace {
 constexpr std::chrono::milliseconds kUpdatePeriod{50};  ///< robots come and go, others take over
 
 }  // namespace
+
+RobotFinder::RobotFinder(const bus::BusOptions& options) : bus_(bus::connect_raw(options)) {
+  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { note(writer, change); });
+}
+
+RobotFinder::~RobotFinder() {
+  bus_->watch({});
+}
+
+void RobotFinder::note(const bus::TopicWriter& writer, bus::WriterChange change) {
+  const bus::RobotTopic name = bus::split_robot(writer.topic.name);
+  if (name.topic != bus::topics::kColorJpeg.name) return;
+  if (writer.topic.type != bus::dds_type_name(bus::MessageTraits<msg::CompressedImage>::kId)) return;
+  const std::lock_guard lock(mutex_);
+  std::set<bus::WriterId>& cameras = cameras_[name.robot];
+  if (change == bus::WriterChange::kGone) {
+    cameras.erase(writer.id);
+  } else {
+    cameras.insert(writer.id);
+  }
+  if (cameras.empty()) cameras_.erase(name.robot);
+}
+
+std::set<std::string> RobotFinder::robots() const {
+  const std::lock_guard lock(mutex_);
+  std::set<std::string> names;
+  for (const auto& [robot, cameras] : cameras_) names.insert(robot);
+  return names;
+}
 
 FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
     : config_(config),

@@ -9,14 +9,34 @@
 #include <set>
 #include <string>
 
+#include "common/bus/raw_bus.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "services/detector/fleet/fleet_config.hpp"
 #include "services/detector/fleet/fleet_pipeline.hpp"
-#include "services/detector/fleet/robot_finder.hpp"
 #include "services/detector/fleet/robot_lane.hpp"
 
 namespace rtd::detector {
+
+/// Finds the robots of a domain by their cameras, which announce JPEG images. Thread-safe.
+class RobotFinder {
+ public:
+  /// Joins the domain. Throws BusError.
+  explicit RobotFinder(const bus::BusOptions& options);
+  ~RobotFinder();
+  RobotFinder(const RobotFinder&) = delete;
+  RobotFinder& operator=(const RobotFinder&) = delete;
+
+  /// Robots with a camera now; "" is the one without a name.
+  std::set<std::string> robots() const;
+
+ private:
+  void note(const bus::TopicWriter& writer, bus::WriterChange change);
+
+  mutable std::mutex mutex_;
+  std::map<std::string, std::set<bus::WriterId>> cameras_;
+  std::shared_ptr<bus::RawBus> bus_;
+};
 
 /// One detector for the robots of a domain, by their JPEG images. Robots are found while it runs. The newest image of
 /// each robot waits for its turn, batches are decoded by several threads while the network computes the batch before,

@@ -3,13 +3,78 @@
 #include "services/detector/core/onnx_file.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <set>
+#include <span>
 #include <sstream>
-
-#include "services/detector/core/protobuf_wire.hpp"
+#include <string>
 
 namespace rtd::detector {
 namespace {
+
+// Protobuf's wire format, without its library. Nothing here reads outside the bytes, whatever they hold.
+
+using Span = std::span<const std::uint8_t>;
+
+struct Field {
+  int number = 0;
+  std::uint64_t varint = 0;  ///< of a field that is a number
+  Span bytes;                ///< of all others; no data() for a number
+};
+
+enum WireType : int { kVarint = 0, kFixed64 = 1, kLengthDelimited = 2, kFixed32 = 5 };
+
+/// Takes the first bytes off a span; empty when it has less.
+std::optional<Span> take_bytes(Span& span, std::uint64_t count) {
+  if (count > span.size()) return std::nullopt;
+  const Span taken = span.first(count);
+  span = span.subspan(count);
+  return taken;
+}
+
+std::optional<std::uint64_t> take_varint(Span& span) {
+  std::uint64_t value = 0;
+  for (int shift = 0; shift < 64 && !span.empty(); shift += 7) {
+    const std::uint8_t byte = take_bytes(span, 1)->front();
+    value |= std::uint64_t{byte & 0x7FU} << shift;
+    if ((byte & 0x80U) == 0) return value;
+  }
+  return std::nullopt;
+}
+
+/// The next field of a message; empty at its end or where it is malformed.
+std::optional<Field> take_field(Span& span) {
+  const std::optional<std::uint64_t> key = take_varint(span);
+  if (!key) return std::nullopt;
+  Field field{static_cast<int>(*key >> 3U & 0x1FFFFFFFU), 0, {}};
+  const int wire_type = static_cast<int>(*key & 7U);
+  std::optional<std::uint64_t> number;  // the value of a varint, the length of other fields
+  if (wire_type == kVarint || wire_type == kLengthDelimited) number = take_varint(span);
+  if (wire_type == kFixed64) number = 8;
+  if (wire_type == kFixed32) number = 4;
+  if (!number) return std::nullopt;
+  if (wire_type == kVarint) {
+    field.varint = *number;
+    return field;
+  }
+  const std::optional<Span> body = take_bytes(span, *number);
+  if (!body) return std::nullopt;
+  field.bytes = *body;
+  return field;
+}
+
+/// The first field of this number that is no number itself.
+std::optional<Span> find_message(Span span, int number) {
+  while (const std::optional<Field> field = take_field(span)) {
+    if (field->number == number && field->bytes.data() != nullptr) return field->bytes;
+  }
+  return std::nullopt;
+}
+
+std::string text_of(const std::optional<Span>& span) {
+  return span ? std::string(span->begin(), span->end()) : std::string();
+}
 
 constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueOfEntry = 2, kInputOfGraph = 11,
               kTypeOfValueInfo = 2, kTensorOfType = 1, kShapeOfTensor = 2, kDimOfShape = 1, kValueOfDim = 1,
@@ -17,9 +82,6 @@ constexpr int kGraphOfModel = 7, kMetadataOfModel = 14, kKeyOfEntry = 1, kValueO
               kRawOfTensor = 9, kNodeOfGraph = 1, kInputOfNode = 1, kOutputOfNode = 2, kOperatorOfNode = 4,
               kAttributeOfNode = 5, kTensorOfAttribute = 5;
 constexpr std::uint64_t kFloat = 1, kInt64 = 7;
-
-using protobuf::Field, protobuf::Span, protobuf::find_message, protobuf::take_field, protobuf::take_varint,
-    protobuf::text_of;
 
 /// Dimensions of a ValueInfoProto; 0 stands for "not fixed".
 std::vector<std::uint64_t> read_dimensions(Span value_info) {

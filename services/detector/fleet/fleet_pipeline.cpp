@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/fleet/fleet_pipeline.hpp"
 
+#include <chrono>
 #include <exception>
 #include <thread>
 #include <utility>
@@ -24,6 +25,92 @@ cv::Mat pixels_of(const msg::CompressedImage& jpeg) {
 }
 
 }  // namespace
+
+void FleetArrivals::put(const std::string& robot, std::shared_ptr<const msg::CompressedImage> jpeg) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.put(robot, std::move(jpeg), service::monotonic_ns());
+  }
+  changed_.notify_one();
+}
+
+std::vector<FleetArrivals::Queue::Taken> FleetArrivals::take() {
+  std::unique_lock lock(mutex_);
+  while (!closed_) {
+    Queue::Turn turn = queue_.take(service::monotonic_ns());
+    if (!turn.batch.empty()) return std::move(turn.batch);
+    if (turn.wait_until_ns) {
+      changed_.wait_until(lock, std::chrono::steady_clock::time_point(std::chrono::nanoseconds(*turn.wait_until_ns)));
+    } else {
+      changed_.wait(lock);
+    }
+  }
+  return {};
+}
+
+void FleetArrivals::remove(const std::string& robot) {
+  const std::lock_guard lock(mutex_);
+  queue_.remove(robot);
+}
+
+std::uint64_t FleetArrivals::dropped(const std::string& robot) const {
+  const std::lock_guard lock(mutex_);
+  return queue_.dropped(robot);
+}
+
+void FleetArrivals::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+WorkerPool::WorkerPool(int threads) {
+  for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+}
+
+WorkerPool::~WorkerPool() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  started_.notify_all();
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+void WorkerPool::for_each(std::size_t parts, const Work& work) {
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = &work;
+    parts_ = parts;
+    next_ = 0;
+    helping_ = helpers_.size();
+    ++job_;
+  }
+  started_.notify_all();
+  run_parts();
+  std::unique_lock lock(mutex_);
+  ended_.wait(lock, [this] { return helping_ == 0; });
+}
+
+void WorkerPool::help() {
+  std::uint64_t done = 0;
+  std::unique_lock lock(mutex_);
+  while (true) {
+    started_.wait(lock, [&] { return closed_ || job_ != done; });
+    if (closed_) return;
+    done = job_;
+    lock.unlock();
+    run_parts();
+    lock.lock();
+    if (--helping_ == 0) ended_.notify_one();
+  }
+}
+
+void WorkerPool::run_parts() {
+  for (std::size_t part = next_++; part < parts_; part = next_++) (*work_)(part);
+}
 
 FleetPipeline::FleetPipeline(const FleetConfig& config, Inference inference, Outputs outputs)
     : inference_(std::move(inference)),

@@ -4,24 +4,142 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <span>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "common/msg/ros.hpp"
 #include "common/service/log.hpp"
-#include "services/detector/core/fleet/stage_timing.hpp"
-#include "services/detector/fleet/answer.hpp"
-#include "services/detector/fleet/fleet_arrivals.hpp"
+#include "common/vision/detection.hpp"
+#include "services/detector/core/fleet/fleet_queue.hpp"
 #include "services/detector/fleet/fleet_config.hpp"
-#include "services/detector/fleet/handover.hpp"
-#include "services/detector/fleet/worker_pool.hpp"
 
 namespace rtd::detector {
+
+/// The images that the robots have sent, for one thread that takes them in turns. Thread-safe.
+class FleetArrivals {
+ public:
+  using Queue = FleetQueue<std::shared_ptr<const msg::CompressedImage>>;
+
+  explicit FleetArrivals(const FleetQueueConfig& config) : queue_(config) {}
+
+  void put(const std::string& robot, std::shared_ptr<const msg::CompressedImage> jpeg);
+  /// The next batch; waits for one. Empty once closed.
+  std::vector<Queue::Taken> take();
+  void remove(const std::string& robot);
+  std::uint64_t dropped(const std::string& robot) const;
+  void close();
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  Queue queue_;
+  bool closed_ = false;
+};
+
+/// Threads that share the parts of a job. cv::parallel_for_() has one number of threads for the whole process, which
+/// belongs to the network.
+class WorkerPool {
+ public:
+  using Work = std::function<void(std::size_t part)>;
+
+  /// `threads` at least 1; the thread that calls for_each() is one of them.
+  explicit WorkerPool(int threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
+
+  /// Runs work(0) to work(parts - 1), each once, and returns when all have ended. `work` must not throw. To be called
+  /// by one thread at a time.
+  void for_each(std::size_t parts, const Work& work);
+
+ private:
+  void help();
+  void run_parts();
+
+  std::mutex mutex_;
+  std::condition_variable started_, ended_;
+  const Work* work_ = nullptr;
+  std::size_t parts_ = 0;
+  std::atomic<std::size_t> next_{0};
+  std::uint64_t job_ = 0;
+  std::size_t helping_ = 0;  ///< threads that have not finished this job
+  bool closed_ = false;
+  std::vector<std::thread> helpers_;
+};
+
+/// One place between two threads. The first one can wait until the second one wants something, so that it does not
+/// prepare what will be old when it is used. Thread-safe.
+template <class T>
+class Handover {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Waits until the place is free; the time at which it became free. Empty once closed.
+  std::optional<Clock::time_point> wait_free() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || !item_; });
+    return closed_ ? std::nullopt : std::optional(taken_at_);
+  }
+  /// Waits until the taker waits for the next item, or until the time.
+  void wait_wanted(Clock::time_point latest) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_until(lock, latest, [this] { return closed_ || wanted_; });
+  }
+  /// The place must be free.
+  void put(T item) {
+    {
+      const std::lock_guard lock(mutex_);
+      item_ = std::move(item);
+    }
+    changed_.notify_all();
+  }
+  /// Empty when nothing came in time, or once closed.
+  std::optional<T> take_for(std::chrono::milliseconds timeout) {
+    std::unique_lock lock(mutex_);
+    wanted_ = true;
+    changed_.notify_all();
+    changed_.wait_for(lock, timeout, [this] { return closed_ || item_; });
+    wanted_ = false;
+    if (item_) taken_at_ = Clock::now();
+    std::optional<T> taken = std::exchange(item_, std::nullopt);
+    lock.unlock();
+    changed_.notify_all();
+    return taken;
+  }
+  void close() {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+    }
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::optional<T> item_;
+  Clock::time_point taken_at_{};
+  bool wanted_ = false, closed_ = false;
+};
+
+/// An answer and what it was computed from.
+struct Answer {
+  std::int64_t stamp_ns = 0;    ///< of the image
+  std::int64_t arrived_ns = 0;  ///< CLOCK_MONOTONIC
+  std::size_t batch = 0;        ///< images computed together
+  std::vector<vision::Detection> detections;
+};
 
 /// Images of several robots in, detections out, in two stages: one takes batches in turns and decodes them while the
 /// other one computes the batch before. Knows neither topics nor who the robots are. Thread-safe.

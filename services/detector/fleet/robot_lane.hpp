@@ -15,7 +15,7 @@
 #include "common/service/runtime.hpp"
 #include "services/detector/core/fleet/answer_stats.hpp"
 #include "services/detector/core/fleet/duty.hpp"
-#include "services/detector/fleet/answer.hpp"
+#include "services/detector/fleet/fleet_pipeline.hpp"
 
 namespace rtd::detector {
 
@@ -76,7 +76,7 @@ class RobotLane {
   std::atomic<std::int64_t> started_ns_{0};  ///< of the own heartbeat; 0: does not serve
   std::atomic<bool> reading_{false}, gone_{false};
 
-  std::mutex mutex_;               ///< guards what follows
+  std::mutex mutex_;                 ///< guards what follows
   service::StopToken second_found_;  ///< the heartbeat's; Duty decides
   std::unique_ptr<service::Heartbeat> heartbeat_;
   AnswerStats stats_;

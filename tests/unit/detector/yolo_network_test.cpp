@@ -11,7 +11,7 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/fast_sigmoid.hpp"
-#include "services/detector/core/pointwise_head.hpp"
+#include "services/detector/core/opencv_engine.hpp"
 
 namespace rtd::detector {
 namespace {

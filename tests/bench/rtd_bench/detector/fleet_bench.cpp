@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "services/detector/fleet/batch_detector.hpp"
+#include "services/detector/fleet/fleet_config.hpp"
 #include "services/detector/fleet/fleet_pipeline.hpp"
 #include "tests/bench/rtd_bench/bench_clock.hpp"
 #include "tests/bench/rtd_bench/detector/detector_bench.hpp"
