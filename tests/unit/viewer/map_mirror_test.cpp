@@ -6,7 +6,7 @@
 #include <malloc.h>
 
 #include "common/msg/transform_eigen.hpp"
-#include "services/viewer/core/truth_track.hpp"
+#include "services/viewer/core/robot_mirror.hpp"
 #include "tests/support/sanitizers.hpp"
 
 namespace rtd::viewer {
