@@ -2,22 +2,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/bus/frame_topics.hpp"
+#include "common/msg/ros.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/dense_config.hpp"
+#include "services/dense/core/depth_view.hpp"
+#include "services/dense/core/navigation_grid.hpp"
 #include "services/dense/core/navigation_map.hpp"
+#include "services/dense/core/point_cloud.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
 
 namespace rtd::dense {
+
+/// The filter's mask of what moves; empty when encoding, size or length is wrong.
+std::optional<DynamicMask> from_message(const msg::Image& message);
+
+/// x y z and rgb (packed as usual in ROS), all float32.
+msg::PointCloud2 make_cloud(const std::vector<CloudPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);
+
+/// A floor plan; its origin also says how `grid` is turned in the map.
+msg::OccupancyGrid make_grid(const NavigationGrid& grid, const Eigen::Matrix3d& R_grid_map, std::int64_t stamp_ns,
+                             const std::string& map_frame);
 
 /// Maps for navigation: the floor plan and the voxel map.
 struct GridConfig {

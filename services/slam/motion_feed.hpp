@@ -12,9 +12,16 @@
 #include <vector>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/msg/imu.hpp"
+#include "services/slam/core/inertial/preintegration.hpp"
+#include "services/slam/core/inertial/wheel_stream.hpp"
 #include "services/slam/core/slam_system.hpp"
 
 namespace rtd::slam {
+
+/// The messages of drivers as the core takes them. Whether the values can be is the core's to say.
+ImuSample to_sample(const msg::Imu& imu);
+WheelSample to_sample(const msg::Odometry& odometry);
 
 /// Reads `sensor_msgs/Imu` and `nav_msgs/Odometry` on a connection of its own, as their writers offer them: best effort
 /// where a driver offers no more. Samples wait until the frame that needs them; the oldest go when too many do.

@@ -10,7 +10,7 @@
 #include "common/vision/rgbd_image.hpp"
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/navigation_map.hpp"
-#include "services/dense/dense_messages.hpp"
+#include "services/dense/dense_service.hpp"
 #include "services/dense/frame_joiner.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"

@@ -9,7 +9,7 @@
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/motion_samples.hpp"
+#include "services/slam/motion_feed.hpp"
 #include "services/slam/slam_messages.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "common/geometry/ply.hpp"
-#include "services/dense/dense_messages.hpp"
+#include "services/dense/dense_service.hpp"
 
 namespace rtd::dense {
 namespace {
