@@ -6,17 +6,66 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "common/camera/synthetic/color_faults.hpp"
 #include "common/camera/synthetic/depth_faults.hpp"
 #include "common/camera/synthetic/faults.hpp"
-#include "common/camera/synthetic/lens.hpp"
 #include "common/camera/synthetic/renderer.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "common/camera/synthetic/sensor.hpp"
-#include "common/camera/synthetic/shutter.hpp"
 #include "common/geometry/camera_model.hpp"
 
 namespace rtd::camera::synthetic {
+
+/// How an image comes about over time.
+struct Shutter {
+  double readout_s = 0;   ///< from the first row to the last; 0 = all at once
+  double exposure_s = 0;  ///< of each row; 0 = a moment
+};
+
+/// What the camera of a scene sees, its middle row exposed about `t_s`. Camera and moving objects continue while the
+/// rows are read: every 8 rows are drawn for a moment of their own. Colour is the mean over the exposure; depth, mask
+/// and objects are those in its middle. Costs one rendering per 4 ms of exposure; the readout costs next to nothing.
+Rendering take_picture(Renderer& renderer, const Scene& scene, double t_s, const Shutter& shutter);
+
+/// Bends what a pinhole camera sees into the image of a camera with distortion: one table for colour (bilinear), depth,
+/// mask, material and objects (nearest). Immutable.
+class Lens {
+ public:
+  explicit Lens(const geometry::CameraModel& camera);
+
+  /// Sees all that the lens shows. The same as the camera when that has no distortion.
+  const geometry::CameraModel& pinhole() const { return pinhole_; }
+  /// What `rendering`, made by the pinhole camera, becomes; without distortion `rendering` itself.
+  Rendering bent(const Rendering& rendering) const;
+
+ private:
+  geometry::CameraModel pinhole_;
+  cv::Mat from_u_, from_v_;  ///< CV_32FC1, px of the pinhole image; empty without distortion
+};
+
+/// The objects that an image shows, by index. `object` and `moving_mask`: as in Rendering.
+std::vector<ObjectView> find_objects(const cv::Mat& object, const cv::Mat& moving_mask);
+
+/// The faults of a colour image at one instant. A pure function of seed and time; immutable.
+class ColorFaults {
+ public:
+  ColorFaults(const SensorFaults& faults, cv::Size size_px, double fps, std::uint64_t seed);
+
+  /// Vignetting, and light that changes before the exposure follows; in place. Before the sensor's noise.
+  void expose(cv::Mat& color_bgr, double t_s) const;
+  /// What JPEG leaves of an image; the image itself when it is not compressed.
+  cv::Mat compressed(const cv::Mat& color_bgr) const;
+  /// How much too bright the image is, in stops.
+  double exposure_error_ev(double t_s) const;
+
+ private:
+  double light_ev(std::int64_t span) const;
+  double change_s(std::int64_t span) const;
+
+  SensorFaults faults_;
+  double lag_s_;
+  std::uint64_t seed_;
+  cv::Mat falloff_;  ///< CV_32FC3, factor per pixel; empty without vignetting
+};
 
 /// One exposure. Mask and objects are those of the colour image.
 struct Shot {

@@ -3,18 +3,22 @@
 #include "common/camera/synthetic/synthetic_source.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "common/camera/synthetic/texture.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 
 namespace rtd::camera {
 namespace {
 
+constexpr std::uint64_t kBlock = 100;                      // exposures, of which FrameDrops loses a share
 constexpr std::int64_t kFirstStampNs = 1'000'000'000'000;  // 1000 s: no stamp is near zero
 constexpr double kFocalShare = 525.0 / 640.0;              // focal length of a Kinect over the image width
 constexpr float kDepthUnitsPerM = 5000;
@@ -73,7 +77,7 @@ synthetic::SensorModel make_sensor(const SyntheticOptions& options) {
   return model;
 }
 
-std::uint64_t arriving_frames(const SyntheticOptions& options, const synthetic::FrameDrops& drops) {
+std::uint64_t arriving_frames(const SyntheticOptions& options, const FrameDrops& drops) {
   if (options.frames == 0) return 0;
   return std::max<std::uint64_t>(1, drops.arrived_before(options.frames));  // 0 would be endless
 }
@@ -163,6 +167,34 @@ const Named& choose(const SourceUri& uri, const std::string& key, const std::vec
 }
 
 }  // namespace
+
+FrameDrops::FrameDrops(double share, std::uint64_t seed)
+    : lost_(static_cast<std::uint64_t>(std::lround(share * static_cast<double>(kBlock)))), seed_(seed ^ 0xD209ULL) {}
+
+/// Those of a block that arrive, ascending: the first of a shuffled row.
+std::vector<std::uint64_t> FrameDrops::arriving_in(std::uint64_t block) const {
+  std::vector<std::uint64_t> row(kBlock);
+  std::iota(row.begin(), row.end(), 0);
+  synthetic::SeededRandom random(seed_ ^ (block * 0x9E3779B97F4A7C15ULL));
+  for (std::uint64_t last = kBlock - 1; last > 0; --last) std::swap(row[last], row[random.next() % (last + 1)]);
+  row.resize(kBlock - lost_);
+  std::sort(row.begin(), row.end());
+  return row;
+}
+
+std::uint64_t FrameDrops::exposure_of(std::uint64_t frame) const {
+  if (lost_ == 0) return frame;
+  const std::uint64_t arriving = kBlock - lost_, block = frame / arriving;
+  return block * kBlock + arriving_in(block)[frame % arriving];
+}
+
+std::uint64_t FrameDrops::arrived_before(std::uint64_t exposure) const {
+  if (lost_ == 0) return exposure;
+  const std::uint64_t block = exposure / kBlock;
+  const std::vector<std::uint64_t> arriving = arriving_in(block);
+  const auto next = std::lower_bound(arriving.begin(), arriving.end(), exposure % kBlock);
+  return block * (kBlock - lost_) + static_cast<std::uint64_t>(next - arriving.begin());
+}
 
 SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   SyntheticOptions options;

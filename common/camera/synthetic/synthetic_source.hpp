@@ -2,17 +2,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/synthetic/faults.hpp"
-#include "common/camera/synthetic/frame_drops.hpp"
 #include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "common/camera/synthetic/scene_camera.hpp"
 
 namespace rtd::camera {
+
+/// Which exposures of a camera are lost on the way: of every 100, a share at random places. A pure function of the
+/// seed: any frame is found without counting from the first. Immutable.
+class FrameDrops {
+ public:
+  /// `share`: of the exposures, [0, 0.9], rounded to hundredths.
+  FrameDrops(double share, std::uint64_t seed);
+
+  /// Number of the exposure that arrives as the `frame`-th, both from 0.
+  std::uint64_t exposure_of(std::uint64_t frame) const;
+  /// How many of the exposures before this one arrive.
+  std::uint64_t arrived_before(std::uint64_t exposure) const;
+
+ private:
+  std::vector<std::uint64_t> arriving_in(std::uint64_t block) const;
+
+  std::uint64_t lost_, seed_;  ///< of a block
+};
 
 /// The parameters of `synthetic:NAME?key=value`.
 struct SyntheticOptions {
@@ -51,7 +70,7 @@ class SyntheticSource final : public FrameSource {
   bool at_end() const { return info_.frames != 0 && counters_.frames >= info_.frames; }
 
   SyntheticOptions options_;
-  synthetic::FrameDrops drops_;
+  FrameDrops drops_;
   SourceInfo info_;
   SourceCounters counters_;
   synthetic::Scene scene_;

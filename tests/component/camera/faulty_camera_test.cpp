@@ -6,7 +6,7 @@
 
 #include "common/camera/synthetic/renderer.hpp"
 #include "common/camera/synthetic/scene.hpp"
-#include "common/camera/synthetic/shutter.hpp"
+#include "common/camera/synthetic/scene_camera.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 

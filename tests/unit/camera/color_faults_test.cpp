@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/synthetic/color_faults.hpp"
+#include "common/camera/synthetic/scene_camera.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,15 +4,12 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/synthetic/frame_drops.hpp"
-#include "common/camera/synthetic/lens.hpp"
 #include "common/camera/synthetic/scene_camera.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 
 namespace rtd::camera {
 namespace {
 
-using synthetic::FrameDrops;
 using synthetic::Lens;
 using synthetic::SensorFaults;
 using ::testing::AllOf;
