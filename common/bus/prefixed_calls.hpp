@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "common/bus/calls.hpp"
+#include "common/bus/backend.hpp"
 #include "common/bus/raw_bus.hpp"
 
 /// Calls as rmw_cyclonedds has them: behind the CDR header of every sample stand 16 bytes, the number of the client

@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "common/bus/command_desk.hpp"
+#include "common/bus/commands.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/exit_code.hpp"

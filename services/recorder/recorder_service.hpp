@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/bus/command_desk.hpp"
+#include "common/bus/commands.hpp"
 #include "common/io/named_files.hpp"
 #include "common/service/config.hpp"
 #include "services/recorder/recording_session.hpp"

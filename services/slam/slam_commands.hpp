@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "common/bus/command_desk.hpp"
+#include "common/bus/commands.hpp"
 #include "common/io/named_files.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"

@@ -4,13 +4,18 @@
 
 namespace rtd::bus::fastdds {
 
-/// Does nothing but make the linker take robust_locks.cpp. Its functions stand before those of the C library of the
-/// same name and make every lock in shared memory robust, as Fast DDS 2.9 does not: a lock whose owner was killed is
-/// free at once. Otherwise each process that sends something to the killed one waits for the lock for a second, and
+/// Does nothing but make the linker take c_library.cpp. Its functions stand before those of the C library of the same
+/// name. Not with AddressSanitizer or ThreadSanitizer, which have functions of these names themselves.
+///
+/// Robust locks: every lock in shared memory is robust, as Fast DDS 2.9 does not make it: a lock whose owner was killed
+/// is free at once. Otherwise each process that sends something to the killed one waits for the lock for a second, and
 /// with it its discovery, and a reader of frames may throw or wait forever. Only the state that a lock of Fast DDS
 /// guards for some microseconds may then be unfinished: an entry of a queue or a counter of waiting threads.
 ///
-/// Not with AddressSanitizer or ThreadSanitizer, which have functions of these names themselves.
-void link_robust_locks() noexcept;
+/// After a standstill: Fast DDS's timers, and nothing else, wait a little longer when they went off seconds late: the
+/// process had been stopped. Otherwise every lease that ran out meanwhile ends at once, and Fast DDS 2.9 loses a
+/// participant for good whose next announcement arrives in the microseconds in which it is forgotten. When all
+/// processes of a robot continue at the same moment (a paused container), that is one pair of them in ten.
+void link_c_library_functions() noexcept;
 
 }  // namespace rtd::bus::fastdds

@@ -5,11 +5,10 @@
 #include <fastdds/rtps/common/WriteParams.h>
 
 #include <algorithm>
-#include <optional>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <optional>
 
 #include "common/bus/fastdds/message_type.hpp"
-#include "common/bus/fastdds/raw_type.hpp"
 #include "common/bus/message_pool.hpp"
 
 namespace rtd::bus::fastdds {

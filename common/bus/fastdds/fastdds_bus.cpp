@@ -2,15 +2,134 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/vendors.hpp"
 
+#include <fastdds/rtps/common/WriteParams.h>
+
+#include <memory>
 #include <utility>
 
-#include "common/bus/fastdds/calls.hpp"
+#include "common/bus/backend.hpp"
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/endpoints.hpp"
+#include "common/bus/fastdds/message_type.hpp"
+#include "common/bus/fastdds/participant.hpp"
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/prefixed_calls.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
+
+using eprosima::fastrtps::types::ReturnCode_t;
+
+/// What the codec writes: the bytes, and the identities beside them, which Fast DDS completes.
+struct CallOutput {
+  std::span<const std::byte> cdr;
+  rtps::WriteParams& params;
+};
+
+/// What the codec takes.
+struct CallSample {
+  rtps::SampleIdentity own, related;
+  ByteBlock bytes;
+};
+
+class CallCodec : public Codec {
+ public:
+  explicit CallCodec(RawTopic topic) : topic_(std::move(topic)) {}
+  bool plain() const override { return false; }
+  dds::TypeSupport create_type() const override { return dds::TypeSupport(new RawType(topic_, false, 0)); }
+  bool write(dds::DataWriter& writer, const void* message) const override {
+    const CallOutput& output = *static_cast<const CallOutput*>(message);
+    RawData data{output.cdr, nullptr};
+    return writer.write(&data, output.params);
+  }
+  TakenSample take(dds::DataReader& reader, const Accepts&) override {
+    auto sample = std::make_shared<CallSample>();
+    RawData data{{}, &sample->bytes};
+    dds::SampleInfo info;
+    if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) return {};
+    if (!info.valid_data) return {TakenSample::Kind::kNoData};
+    sample->own = info.sample_identity;
+    sample->related = info.related_sample_identity;
+    return {TakenSample::Kind::kMessage, std::move(sample), to_writer_id(info.sample_identity.writer_guid())};
+  }
+  std::shared_ptr<void> allocate() const override { throw BusError("a service lends no memory"); }
+
+ private:
+  const RawTopic topic_;
+};
+
+CallId to_call_id(const rtps::SampleIdentity& identity) {
+  return {to_writer_id(identity.writer_guid()), static_cast<std::int64_t>(identity.sequence_number().to64long())};
+}
+
+rtps::SampleIdentity to_identity(const CallId& id) {
+  rtps::SampleIdentity identity;
+  rtps::GUID_t& guid = identity.writer_guid();
+  std::copy_n(id.client.begin(), rtps::GuidPrefix_t::size, guid.guidPrefix.value);
+  std::copy_n(id.client.begin() + rtps::GuidPrefix_t::size, rtps::EntityId_t::size, guid.entityId.value);
+  identity.sequence_number() = rtps::SequenceNumber_t(static_cast<std::uint64_t>(id.sequence));
+  return identity;
+}
+
+class FastddsCalls : public CallEndpoint {
+ public:
+  FastddsCalls(std::shared_ptr<Participant> participant, const RawTopic& sent, const RawTopic& received, CallRole role,
+               OnCall on_call)
+      : role_(role),
+        on_call_(std::move(on_call)),
+        writer_(participant, std::make_unique<CallCodec>(sent), sent.name, raw_writer_qos(call_writer_options()), {}),
+        reader_(participant, std::make_unique<CallCodec>(received), received.name,
+                raw_reader_qos(call_reader_options()),
+                [this](const std::shared_ptr<const void>& sample, const WriterId&) {
+                  receive(*static_cast<const CallSample*>(sample.get()));
+                },
+                {}) {}
+
+  std::optional<CallId> request(std::span<const std::byte> cdr) override {
+    rtps::WriteParams params;
+    params.related_sample_identity().writer_guid(reader_.guid());
+    const CallOutput output{cdr, params};
+    if (!writer_.write(&output)) return std::nullopt;
+    rtps::SampleIdentity sent = params.sample_identity();
+    sent.writer_guid(reader_.guid());
+    return to_call_id(sent);
+  }
+  bool reply(const CallId& id, std::span<const std::byte> cdr) override {
+    rtps::WriteParams params;
+    params.related_sample_identity(to_identity(id));
+    const CallOutput output{cdr, params};
+    return writer_.write(&output);
+  }
+  int matched_readers() const override { return writer_.matched(); }
+  int matched_writers() const override { return reader_.matched(); }
+
+ private:
+  void receive(const CallSample& sample) const {
+    const auto cdr = sample.bytes.view();
+    if (role_ == CallRole::kServer) {
+      rtps::SampleIdentity asked = sample.own;
+      if (sample.related.writer_guid() != rtps::GUID_t::unknown()) asked.writer_guid(sample.related.writer_guid());
+      return on_call_(to_call_id(asked), cdr);
+    }
+    rtps::SampleIdentity answered = sample.related;
+    if (answered.writer_guid() == writer_.guid()) answered.writer_guid(reader_.guid());
+    if (answered.writer_guid() == reader_.guid()) on_call_(to_call_id(answered), cdr);
+  }
+
+  const CallRole role_;
+  const OnCall on_call_;
+  FastddsWriter writer_;
+  FastddsReader reader_;  // last: it uses the others
+};
+
+/// One end of a service as rmw_fastrtps has it: the identities travel beside the samples, in their inline QoS. A
+/// request is known by its number and by the GUID of the reader that waits for the reply, which the client announces as
+/// related identity; older clients (ROS 2 Foxy) announce none and mean their writer.
+std::unique_ptr<CallEndpoint> create_calls(std::shared_ptr<Participant> participant, const CallTopics& topics,
+                                           CallRole role, OnCall on_call) {
+  return std::make_unique<FastddsCalls>(std::move(participant), sent_topic(topics, role), received_topic(topics, role),
+                                        role, std::move(on_call));
+}
 
 class FastddsBackend : public BusBackend {
  public:

@@ -10,9 +10,8 @@
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
+#include "common/bus/fastdds/c_library.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
-#include "common/bus/fastdds/robust_locks.hpp"
-#include "common/bus/fastdds/standstill_guard.hpp"
 #include "common/bus/network.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -100,8 +99,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, En
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");
   }
-  link_robust_locks();
-  link_standstill_guard();
+  link_c_library_functions();
   configure_library_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;

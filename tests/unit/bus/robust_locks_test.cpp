@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/fastdds/robust_locks.hpp"
+#include "common/bus/fastdds/c_library.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ class RobustLocks : public testing::Test {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     GTEST_SKIP() << "not with a sanitizer, which replaces these functions itself";
 #endif
-    link_robust_locks();
+    link_c_library_functions();
     lock_ = make_lock();
   }
   SharedLock* lock_ = nullptr;
@@ -99,7 +99,7 @@ TEST_F(RobustLocks, a_wait_ends_although_the_owner_was_killed) {
 /// A library finds the functions of the program before those of the C library.
 TEST_F(RobustLocks, are_those_that_fast_dds_finds) {
   Dl_info ours{}, found{};
-  ASSERT_NE(dladdr(reinterpret_cast<void*>(&link_robust_locks), &ours), 0);
+  ASSERT_NE(dladdr(reinterpret_cast<void*>(&link_c_library_functions), &ours), 0);
   for (const char* name : {"pthread_mutexattr_setpshared", "pthread_mutex_timedlock", "pthread_mutex_trylock",
                            "pthread_cond_wait", "pthread_cond_timedwait"}) {
     ASSERT_NE(dladdr(dlsym(RTLD_DEFAULT, name), &found), 0) << name;
