@@ -2,12 +2,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/log.hpp"
 
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <syslog.h>
+#include <systemd/sd-journal.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <mutex>
 #include <string_view>
 
 #include "common/io/printable.hpp"
-#include "common/service/journal_sink.hpp"
 
 namespace rtd::service {
 namespace {
@@ -26,6 +35,55 @@ class Logger : public spdlog::logger {
     copy.payload = shown;
     spdlog::logger::sink_it_(copy);
   }
+};
+
+/// "cause" as a field's name; empty when it cannot be one.
+std::string field_name(std::string_view key) {
+  std::string name = "RTD_";
+  for (const char c : key) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_') return {};
+    name += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  return key.empty() ? std::string() : name;
+}
+
+int priority(spdlog::level::level_enum level) {
+  switch (level) {
+    case spdlog::level::trace:
+    case spdlog::level::debug:
+      return LOG_DEBUG;
+    case spdlog::level::warn:
+      return LOG_WARNING;
+    case spdlog::level::err:
+      return LOG_ERR;
+    case spdlog::level::critical:
+      return LOG_CRIT;
+    default:
+      return LOG_INFO;
+  }
+}
+
+/// Sends log lines to the journal with their fields: `journalctl RTD_EVENT=tracking_lost`.
+class JournalSink : public spdlog::sinks::base_sink<std::mutex> {
+ public:
+  explicit JournalSink(std::string service) : service_(std::move(service)) {}
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    const std::string_view line(message.payload.data(), message.payload.size());
+    std::vector<std::string> fields = journal_fields(line);
+    fields.push_back("MESSAGE=" + std::string(line));
+    fields.push_back("PRIORITY=" + std::to_string(priority(message.level)));
+    fields.push_back("SYSLOG_IDENTIFIER=rtd-" + service_);
+    std::vector<iovec> parts;
+    parts.reserve(fields.size());
+    for (std::string& field : fields) parts.push_back({field.data(), field.size()});
+    sd_journal_sendv(parts.data(), static_cast<int>(parts.size()));
+  }
+  void flush_() override {}
+
+ private:
+  const std::string service_;
 };
 
 }  // namespace
@@ -54,6 +112,33 @@ bool RateLimit::pass() {
   last_suppressed_ = suppressed_;
   suppressed_ = 0;
   return true;
+}
+
+std::vector<std::string> journal_fields(std::string_view line) {
+  std::vector<std::string> fields;
+  while (!line.empty()) {
+    const std::size_t equals = line.find_first_of("= ");
+    if (equals == std::string_view::npos) break;
+    if (line[equals] == ' ') {
+      line.remove_prefix(equals + 1);
+      continue;
+    }
+    const std::string name = field_name(line.substr(0, equals));
+    line.remove_prefix(equals + 1);
+    const bool quoted = line.starts_with('"');
+    if (quoted) line.remove_prefix(1);
+    const std::size_t end = std::min(line.find(quoted ? '"' : ' '), line.size());
+    if (!name.empty()) fields.push_back(name + '=' + std::string(line.substr(0, end)));
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return fields;
+}
+
+bool stderr_is_journal() {
+  const char* const stream = std::getenv("JOURNAL_STREAM");
+  struct stat file {};
+  return stream != nullptr && fstat(STDERR_FILENO, &file) == 0 &&
+         std::to_string(file.st_dev) + ':' + std::to_string(file.st_ino) == stream;
 }
 
 }  // namespace rtd::service

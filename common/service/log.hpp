@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace rtd::service {
 
@@ -28,5 +30,12 @@ class RateLimit {
   std::chrono::steady_clock::time_point last_{};
   std::uint64_t suppressed_ = 0, last_suppressed_ = 0;
 };
+
+/// The fields of a log line `event=frame_late frame=12 cause="a b"`, as the journal of systemd names them:
+/// {"RTD_EVENT=frame_late", "RTD_FRAME=12", "RTD_CAUSE=a b"}. What is not KEY=VALUE is left out.
+std::vector<std::string> journal_fields(std::string_view line);
+
+/// Whether stderr of this process goes to the journal: systemd then sets JOURNAL_STREAM to its device and inode.
+bool stderr_is_journal();
 
 }  // namespace rtd::service

@@ -16,12 +16,11 @@
 
 #include "common/bus/bus.hpp"
 #include "common/bus/bus_factory.hpp"
+#include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/peer_clocks.hpp"
-#include "common/service/log.hpp"
 #include "common/service/peer_health.hpp"
 #include "common/service/peer_table.hpp"
-#include "common/service/process_book.hpp"
 #include "common/service/stop_token.hpp"
 #include "common/service/trace.hpp"
 

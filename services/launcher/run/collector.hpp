@@ -12,7 +12,6 @@
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/peer_table.hpp"
-#include "common/service/process_book.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 

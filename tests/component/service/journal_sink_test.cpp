@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/service/journal_sink.hpp"
+#include "common/service/log.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/stat.h>

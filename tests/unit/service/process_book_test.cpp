@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/service/process_book.hpp"
+#include "common/service/peer_table.hpp"
 
 #include <gtest/gtest.h>
 
@@ -25,8 +25,9 @@ class ProcessBookTest : public testing::Test {
   }
   bool gone(int connection) const { return book_.gone(bus::participant_of(writer(connection))); }
   std::int64_t now_ns_ = 5000 * kMs, dead_pid_ = 0;
-  ProcessBook book_{[this](std::int64_t pid) { return pid == dead_pid_ ? ProcessState::kGone : ProcessState::kRunning; },
-                    [this] { return now_ns_; }};
+  ProcessBook book_{
+      [this](std::int64_t pid) { return pid == dead_pid_ ? ProcessState::kGone : ProcessState::kRunning; },
+      [this] { return now_ns_; }};
 };
 
 TEST_F(ProcessBookTest, a_silent_connection_whose_process_is_no_more_is_gone) {

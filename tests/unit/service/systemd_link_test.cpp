@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/service/systemd_link.hpp"
+#include "common/service/run_service.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
