@@ -10,11 +10,30 @@
 #include <string_view>
 #include <vector>
 
-#include "common/process/notify_socket.hpp"
 #include "common/process/process_host.hpp"
 #include "common/service/command_line.hpp"
 
 namespace rtd::process {
+
+/// Where children say that their work continues. They do it as under systemd (Type=notify, WatchdogSec=), so that a
+/// service has one way to do it (service::SystemdLink). Belongs to one thread.
+class NotifySocket {
+ public:
+  /// Throws ProcessError when the system has no socket left.
+  NotifySocket();
+  ~NotifySocket();
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  int fd() const { return fd_; }  ///< readable when a child has said something
+  /// The environment of a child: that of this process, with the socket and the longest silence in it.
+  std::vector<std::string> environment(std::chrono::microseconds longest_silence) const;
+  /// Passes on everything that was said, e.g. "READY=1". The kernel vouches for the sender.
+  void read(const std::function<void(ProcessId sender, std::string_view text)>& on_message) const;
+
+ private:
+  const int fd_;
+};
 
 /// Splits a byte stream into lines. A line longer than 4096 bytes comes in pieces.
 class LineSplitter {

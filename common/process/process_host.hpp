@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+struct rusage;
+
 namespace rtd::process {
 
 /// A process could not be started; what() names the executable and the reason.
@@ -50,5 +52,8 @@ class ProcessHost {
   /// How often the process has said that its work continues. 0: it has not begun, is about to end, or never says it.
   virtual std::uint64_t signs_of_life(ProcessId process) const = 0;
 };
+
+/// User and system time of a process.
+double cpu_s(const rusage& usage);
 
 }  // namespace rtd::process

@@ -247,7 +247,7 @@ bool measure_all(const AblateOptions& options, Ablation& ablation) {
 
 service::ExitCode run_ablation(const AblateOptions& options) {
   Ablation ablation = prepare(options);
-  const io::FolderLock folder = process::take_out_folder(options.out_dir);
+  const process::FolderLock folder = process::take_out_folder(options.out_dir);
   const bool finished = measure_all(options, ablation);
   write_results(ablation, options.out_dir);
   if (options.json) {

@@ -114,7 +114,7 @@ int run_both(const DemoOptions& options, const std::string& source) {
 int demo(const DemoOptions& options) {
   service::outlive_readers();
   return service::report_errors<service::ConfigError>("rtd demo", std::cerr, [&]() -> int {
-    const io::FolderLock folder = process::take_out_folder(options.out_dir);
+    const process::FolderLock folder = process::take_out_folder(options.out_dir);
     return run_both(options, choose_source(options));
   });
 }

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "common/process/cpu_time.hpp"
+#include "common/process/process_host.hpp"
 
 namespace rtd::launcher {
 

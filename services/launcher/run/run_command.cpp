@@ -137,7 +137,7 @@ RunResult run(const RunOptions& options) {
   const int code = service::report_errors<service::ConfigError, camera::SourceError, bus::BusError>(
       "rtd run", std::cerr, [&]() -> int {
         const RunSetup setup = prepare_run(options);
-        const io::FolderLock folder = process::take_out_folder(setup.out_dir);
+        const process::FolderLock folder = process::take_out_folder(setup.out_dir);
         result = run_prepared(setup, plan_services(setup));
         return result.code;
       });

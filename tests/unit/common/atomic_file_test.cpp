@@ -2,20 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <fstream>
 #include <stdexcept>
 
 #include "common/io/byte_source.hpp"
-#include "common/io/folder_lock.hpp"
 #include "common/io/text.hpp"
+#include "common/process/out_folder.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::io {
@@ -58,10 +58,12 @@ TEST_F(AtomicFileTest, appears_whole_and_only_when_committed) {
 
 TEST_F(AtomicFileTest, leaves_nothing_of_what_failed) {
   put("a", "before");
-  EXPECT_THROW(write_file(at("a"), [](std::ostream& out) {
-    out << std::string(200'000, 'x');
-    throw std::runtime_error("no more");
-  }), std::runtime_error);
+  EXPECT_THROW(write_file(at("a"),
+                          [](std::ostream& out) {
+                            out << std::string(200'000, 'x');
+                            throw std::runtime_error("no more");
+                          }),
+               std::runtime_error);
   EXPECT_EQ(text("a"), "before");
   EXPECT_EQ(files(), 1U);
 }
@@ -180,7 +182,8 @@ TEST_F(AtomicFileTest, what_a_killed_process_left_is_removed_and_nothing_else) {
 TEST_F(AtomicFileTest, a_growing_file_is_not_written_through_a_link) {
   put("startup", "export PATH");
   fs::create_symlink("startup", at("run.mcap"));
-  EXPECT_THAT([&] { FileSink(at("run.mcap"), IfExists::kReplace); }, ThrowsMessage<IoError>(HasSubstr("symbolic link")));
+  EXPECT_THAT([&] { FileSink(at("run.mcap"), IfExists::kReplace); },
+              ThrowsMessage<IoError>(HasSubstr("symbolic link")));
   EXPECT_THROW(FileSink(at("run.mcap"), IfExists::kFail), IoError);
   EXPECT_EQ(text("startup"), "export PATH");
   EXPECT_THROW(FileSource(at("run.mcap"), Links::kRefuse), IoError);
@@ -189,17 +192,17 @@ TEST_F(AtomicFileTest, a_growing_file_is_not_written_through_a_link) {
 
 TEST_F(AtomicFileTest, a_folder_belongs_to_one_process_at_a_time) {
   {
-    const FolderLock first(folder_.path());
-    EXPECT_THAT([&] { FolderLock(folder_.path()); },
-                ThrowsMessage<IoError>(AllOf(HasSubstr(folder_.path().string()),
-                                             HasSubstr("process " + std::to_string(::getpid())),
-                                             HasSubstr("another folder"))));
+    const process::FolderLock first(folder_.path());
+    EXPECT_THAT(
+        [&] { process::FolderLock(folder_.path()); },
+        ThrowsMessage<IoError>(AllOf(HasSubstr(folder_.path().string()),
+                                     HasSubstr("process " + std::to_string(::getpid())), HasSubstr("another folder"))));
   }
-  EXPECT_NO_THROW(FolderLock(folder_.path()));
+  EXPECT_NO_THROW(process::FolderLock(folder_.path()));
   put("startup", "export PATH");
   fs::remove(at(".rtd.lock"));
   fs::create_symlink("startup", at(".rtd.lock"));
-  EXPECT_THROW(FolderLock(folder_.path()), IoError);
+  EXPECT_THROW(process::FolderLock(folder_.path()), IoError);
   EXPECT_EQ(text("startup"), "export PATH");
 }
 
