@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "common/msg/tracking.hpp"
-#include "services/filter/core/boxes/detection_batch.hpp"
+#include "services/filter/core/boxes/box_tracks.hpp"
 
 namespace rtd::filter {
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "services/filter/core/belief/object_motion.hpp"
+#include "services/filter/core/belief/belief_update.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"

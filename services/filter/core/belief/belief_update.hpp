@@ -4,10 +4,44 @@
 
 #include <vector>
 
-#include "services/filter/core/belief/object_motion.hpp"
 #include "services/filter/core/belief/surface_beliefs.hpp"
+#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/motion/depth_check.hpp"
+#include "services/filter/core/motion/dynamic_regions.hpp"
+#include "services/filter/core/motion/feature_votes.hpp"
+#include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
+
+/// How far an object as a whole has moved in the image against the static world.
+struct ObjectDrift {
+  int features = 0;
+  float shift_px = 0;  ///< length of the median displacement of its features
+  float sigma_px = 0;  ///< its standard deviation, from the spread of the features
+};
+
+/// The drift of the features on these cells. The median of n features is sqrt(n) times more precise than each of them,
+/// and waving arms in front of a trunk at rest do not change it.
+ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells);
+
+/// Is the shift larger than the noise of the features and of the pose?
+bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
+
+/// What geometry finds out about an object with a class in this frame.
+enum class ObjectMotion { kUnknown, kMoving, kResting };
+
+/// All that geometry found out about a frame.
+struct MotionEvidence {
+  const DynamicRegions& regions;
+  const DepthEvidence& depth;
+  const FeatureVotes& votes;
+};
+
+/// Per object. kMoving: enough of its cells are dynamic, or enough of its features are displaced. kResting: hardly a
+/// cell is dynamic, enough of them were there 0.4 s ago, and its features are at their place. docs/theory/
+/// dynamic_points.md section 5.
+std::vector<ObjectMotion> judge_objects(const std::vector<SceneObject>& objects, const MotionEvidence& evidence,
+                                        const BeliefConfig& config);
 
 /// The object on each cell, -1 = none, not grown. Where masks overlap the higher level wins: a monitor behind a person
 /// is left to geometry, the person is not. Flat objects are pictures: they cover no cell.

@@ -7,13 +7,12 @@
 
 #include "common/vision/motion_levels.hpp"
 #include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/boxes/box_tracks.hpp"
+#include "services/filter/core/boxes/mask_flow.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
-#include "services/filter/core/boxes/box_tracks.hpp"
-#include "services/filter/core/boxes/detection_batch.hpp"
-#include "services/filter/core/boxes/mask_flow.hpp"
 
 namespace rtd::filter {
 
