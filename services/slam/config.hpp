@@ -7,6 +7,10 @@
 #include "common/service/run_settings.hpp"
 #include "services/slam/core/slam_config.hpp"
 
+namespace rtd::service {
+struct Runtime;
+}
+
 namespace rtd::slam {
 
 using service::BaseConfig;
@@ -70,5 +74,10 @@ std::string maps_folder(const ServiceConfig& config, const std::string& state_fo
 /// which tf has been replaced by what it says. Throws service::ConfigError naming the file when it cannot be read or is
 /// damaged.
 SlamConfig core_config(const ServiceConfig& config);
+
+/// The configuration with base.camera=tf replaced by what `rt/tf_static` says: waits until its transforms join the base
+/// with the camera's optical frame, and says every few seconds what is missing. Throws service::ConfigError when
+/// base.tf_timeout_s pass without. Any other configuration comes back as it is, at once.
+ServiceConfig with_mount(ServiceConfig config, service::Runtime& runtime);
 
 }  // namespace rtd::slam

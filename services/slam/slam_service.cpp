@@ -13,9 +13,9 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/slam/config.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
-#include "services/slam/mount_from_tf.hpp"
 
 namespace rtd::slam {
 namespace {

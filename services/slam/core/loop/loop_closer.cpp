@@ -4,7 +4,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "services/slam/core/loop/essential_graph.hpp"
-#include "services/slam/core/loop/place_meeting.hpp"
+#include "services/slam/core/loop/loop_detector.hpp"
 
 namespace rtd::slam {
 namespace {
