@@ -10,7 +10,6 @@
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
-#include "services/viewer/wall_clock.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -49,8 +48,8 @@ std::size_t bytes_of(const msg::Detection2DArray& detections) {
 std::size_t bytes_of(const msg::MapUpdate& update) {
   std::size_t bytes = sizeof(update) + update.loop_edges.size() * sizeof(std::uint32_t);
   for (const msg::MapKeyframe& keyframe : update.keyframes)
-    bytes += sizeof(keyframe) + keyframe.points_m.size() * sizeof(float) +
-             keyframe.covisible.size() * sizeof(std::uint32_t);
+    bytes +=
+        sizeof(keyframe) + keyframe.points_m.size() * sizeof(float) + keyframe.covisible.size() * sizeof(std::uint32_t);
   return bytes;
 }
 

@@ -8,10 +8,16 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_hub.hpp"
 #include "services/viewer/mailbox.hpp"
 
 namespace rtd::viewer {
+
+/// CLOCK_REALTIME, ms since 1970, as a page's clock.
+inline double wall_clock_ms() {
+  return 1e-6 * static_cast<double>(service::realtime_ns());
+}
 
 /// The robots that a page lists when the domain has these topics: all with a name, and "" when services without one
 /// have more than a heartbeat, as this viewer and a detector for several robots have.

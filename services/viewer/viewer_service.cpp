@@ -19,8 +19,8 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
+#include "services/viewer/robot_feed.hpp"
 #include "services/viewer/settings.hpp"
-#include "services/viewer/wall_clock.hpp"
 
 namespace rtd::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/service/json_text.hpp"
-#include "services/viewer/core/byte_writer.hpp"
+#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/service/json_text.hpp"
-#include "services/viewer/core/byte_writer.hpp"
 #include "services/viewer/core/foxglove.hpp"
+#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer::foxglove {
 namespace {

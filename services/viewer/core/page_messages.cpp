@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/vision/jpeg_size.hpp"
-#include "services/viewer/core/byte_writer.hpp"
+#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer::page {
 namespace {

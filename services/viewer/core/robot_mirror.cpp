@@ -9,7 +9,7 @@
 
 #include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "services/viewer/core/byte_writer.hpp"
+#include "services/viewer/core/outbox.hpp"
 #include "services/viewer/core/page_messages.hpp"
 
 namespace rtd::viewer {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "services/viewer/core/byte_writer.hpp"
+#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer {
 namespace {
