@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "common/io/printable.hpp"
-#include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -62,6 +62,12 @@ void make_plausible(msg::ServiceStatus& status) {
 
 }  // namespace
 
+std::string host_name() {
+  std::array<char, 256> name{};
+  const bool known = gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0';
+  return known ? name.data() : "localhost";
+}
+
 Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, SecondInstance second_instance)
     : bus_(bus),
       stop_(stop),
@@ -77,9 +83,9 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, S
   own_.pid = getpid();
   own_.started_ns = started_ns_;
   writer_ = bus.writer(bus::topics::kStatus);
-  reader_ = bus.reader<msg::ServiceStatus>(
-      bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
-                                   const bus::WriterId& writer) { receive(*status, writer); });
+  reader_ = bus.reader<msg::ServiceStatus>(bus::topics::kStatus,
+                                           [this](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                                  const bus::WriterId& writer) { receive(*status, writer); });
   thread_ = std::thread([this] { loop(); });
 }
 

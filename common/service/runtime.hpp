@@ -26,6 +26,9 @@
 
 namespace rtd::service {
 
+/// The name of this host; "localhost" when it has none.
+std::string host_name();
+
 /// Publishes the heartbeat of one service (topic rtd/status, 5 Hz and at changes) and knows those of the others.
 /// Thread-safe.
 class Heartbeat {

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "common/service/config.hpp"
-#include "common/service/host_name.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"

@@ -7,7 +7,6 @@
 
 #include <utility>
 
-#include "common/service/host_name.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
