@@ -10,6 +10,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/concurrency/bounded_queue.hpp"
@@ -23,7 +24,6 @@
 #include "common/vision/detection.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
-#include "services/detector/engine_log.hpp"
 #include "services/detector/image_input.hpp"
 
 namespace CLI {
@@ -31,6 +31,32 @@ class App;
 }
 
 namespace rtd::detector {
+
+/// Logs what happens to the engine: that it was verified, why the CPU takes its place, that the memory of its device
+/// holds fewer images. Each of these once, also when several guards report. Not thread-safe.
+class EngineLog {
+ public:
+  explicit EngineLog(std::string asked) : asked_(std::move(asked)) {}
+
+  void report(const EngineGuard& guard) {
+    const std::string& device = guard.detector().device();
+    if (guard.verified() == EngineGuard::kVerifiedImages && !std::exchange(verified_, true))
+      SPDLOG_INFO("event=engine_verified images={} device=\"{}\"", guard.verified(), device);
+    const std::string before = std::exchange(device_, device);
+    const bool fell_back = !guard.fallback().empty();
+    if (fell_back && guard.fallback() != fallback_) {
+      fallback_ = guard.fallback();
+      SPDLOG_WARN("event=engine_fallback asked={} device=\"{}\" cause=\"{}\"", asked_, device, fallback_);
+    } else if (fallback_.empty() && !before.empty() && device != before) {
+      SPDLOG_WARN("event=engine_changed device=\"{}\"", device);
+    }
+  }
+
+ private:
+  const std::string asked_;
+  std::string device_, fallback_;
+  bool verified_ = false;
+};
 
 /// The optical frame of the colour camera, in which boxes are given (docs/frames.md).
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";

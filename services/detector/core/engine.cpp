@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "common/msg/engine_names.hpp"
-#include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/detector/core/opencv_engine.hpp"
 
 namespace rtd::detector {

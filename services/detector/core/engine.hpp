@@ -92,4 +92,13 @@ std::unique_ptr<Engine> halve_when_full(std::unique_ptr<Engine> engine);
 /// The OpenCL devices of this host, with what they are: "NVIDIA H200 (GPU)"; empty without a driver.
 std::vector<std::string> opencl_devices();
 
+/// Whether this program was built with ONNX Runtime's C API.
+bool knows_onnxruntime();
+
+/// Loads `library`, a libonnxruntime.so, the first time that it is asked for. `device`: "cpu", "cuda" or "cuda:1".
+/// Throws EngineError: this program was built without the C API, the library cannot be loaded or is too old, its device
+/// is not there, or it does not take the network.
+std::unique_ptr<Engine> make_onnxruntime_engine(const EngineModel& model, const std::string& library,
+                                                const std::string& device);
+
 }  // namespace rtd::detector

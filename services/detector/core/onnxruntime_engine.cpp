@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/onnxruntime_engine.hpp"
+#include "services/detector/core/engine.hpp"
 
 #ifndef RTD_HAS_ONNXRUNTIME
 

@@ -14,7 +14,6 @@
 #include "common/service/config.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
-#include "services/detector/engine_log.hpp"
 
 namespace rtd::detector {
 namespace {

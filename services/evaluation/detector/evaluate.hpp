@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "services/detector/core/agreement.hpp"
+#include "services/detector/core/engine_guard.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"

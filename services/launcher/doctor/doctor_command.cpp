@@ -23,7 +23,6 @@
 #include "common/service/model_locator.hpp"
 #include "services/camera/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
-#include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 
 namespace rtd::launcher {

@@ -15,9 +15,7 @@
 
 #include "common/msg/engine_names.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/agreement.hpp"
 #include "services/detector/core/engine_guard.hpp"
-#include "services/detector/core/onnxruntime_engine.hpp"
 #include "services/detector/core/yolo_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 

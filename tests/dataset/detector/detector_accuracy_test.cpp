@@ -12,12 +12,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/agreement.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
-#include "services/detector/core/onnxruntime_engine.hpp"
+#include "services/detector/core/engine_guard.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 
