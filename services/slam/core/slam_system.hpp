@@ -11,7 +11,7 @@
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/corrections.hpp"
 #include "services/slam/core/floor_plane.hpp"
-#include "services/slam/core/map/map_view.hpp"
+#include "services/slam/core/map/map_changes.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
 #include "services/slam/core/tracking/depth_weight.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "common/msg/stamps.hpp"
-#include "services/filter/core/motion/guided_matching.hpp"
+#include "services/filter/core/motion/ego_motion.hpp"
 
 namespace rtd::filter {
 namespace {
