@@ -19,7 +19,6 @@
 #include "services/dense/core/depth_view.hpp"
 #include "services/dense/core/navigation_grid.hpp"
 #include "services/dense/core/navigation_map.hpp"
-#include "services/dense/core/point_cloud.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
 

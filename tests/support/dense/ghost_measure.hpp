@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "services/dense/core/depth_view.hpp"
-#include "services/dense/core/point_cloud.hpp"
+#include "services/dense/core/static_map.hpp"
 #include "services/dense/core/voxel_map.hpp"
 
 namespace rtd::test_support {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/dense/core/point_cloud.hpp"
+#include "services/dense/core/static_map.hpp"
 
 #include <gmock/gmock.h>
 
