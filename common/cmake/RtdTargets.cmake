@@ -91,7 +91,7 @@ function(rtd_test name)
   if(NOT RTD_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL;PARALLEL" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;PARALLEL;WAITS" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} rtd_test_main)
   rtd_common_target(${name})
@@ -110,8 +110,11 @@ function(rtd_test name)
   # 77: tests/support/test_main.cpp. COST: what may take long starts first, so that no core waits for it at the end.
   set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL} SKIP_RETURN_CODE 77
                        TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT})
-  # Several processes that keep time, or ports and domains of this host: not beside other tests.
-  if(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
+  # Several processes that keep time, or ports and domains of this host: not beside other tests. Of those that mostly
+  # wait, and check no time, one at a time runs beside tests that compute.
+  if(ARG_WAITS)
+    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RESOURCE_LOCK processes)
+  elseif(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
 endfunction()
