@@ -16,7 +16,7 @@
 #include "common/ros2/ros1_to_cdr.hpp"
 #include "common/ros2/type_description.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 constexpr std::size_t kMaxDamages = 100;
@@ -150,4 +150,4 @@ CopiedRecording copy_recording(const recordings::Opened& source, const std::file
   return result;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -12,7 +12,7 @@
 #include "common/mcap/compression.hpp"
 #include "common/recordings/open.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// What a new recording holds, and what it lacks.
 struct CopiedRecording {
@@ -28,4 +28,4 @@ struct CopiedRecording {
 CopiedRecording copy_recording(const recordings::Opened& source, const std::filesystem::path& file,
                                mcap::Compression compression, const std::function<void(std::uint64_t)>& progress);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

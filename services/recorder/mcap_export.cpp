@@ -16,7 +16,7 @@
 #include "common/ros2/type_description.hpp"
 #include "common/ros_codec/wire.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 namespace fs = std::filesystem;
@@ -133,4 +133,4 @@ std::uint64_t export_mcap(camera::FrameSource& source, const fs::path& file, mca
   return frames;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -7,7 +7,7 @@
 #include "common/camera/tum/tum_export.hpp"
 #include "common/mcap/compression.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// Writes a source to its end, at most `max_frames` (0: all), to a new MCAP file that mcap: reads back, pixel by pixel,
 /// and that the tools of ROS 2 open: /camera/color/image_raw (rgb8), /camera/aligned_depth_to_color/image_raw (16UC1
@@ -17,4 +17,4 @@ namespace rtd::recording {
 std::uint64_t export_mcap(camera::FrameSource& source, const std::filesystem::path& file, mcap::Compression compression,
                           std::uint64_t max_frames, const camera::OnFrame& on_frame = {});
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

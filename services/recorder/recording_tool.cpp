@@ -7,16 +7,16 @@
 
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
-#include "common/io/recording_forms.hpp"
-#include "common/camera/source_schemes.hpp"
 #include "services/recorder/copy_recording.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/mcap_export.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using camera::SkipReason;
@@ -170,22 +170,22 @@ int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& 
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings
 
 /// rtd-recording: `rtd info`, `rtd diff` and `rtd convert`.
 int main(int argc, char** argv) {
   using namespace rtd;
-  recording::InfoOptions info;
-  recording::DiffRequest diff;
-  recording::ConvertOptions convert;
+  recordings::InfoOptions info;
+  recordings::DiffRequest diff;
+  recordings::ConvertOptions convert;
   CLI::App app{"What recordings contain, how they differ, and their conversion", "rtd"};
   app.require_subcommand(1);
-  recording::add_info_command(app, info);
-  recording::add_diff_command(app, diff);
-  recording::add_convert_command(app, convert);
+  recordings::add_info_command(app, info);
+  recordings::add_diff_command(app, diff);
+  recordings::add_convert_command(app, convert);
   return service::run_command(app, argc, argv, [&] {
-    if (app.got_subcommand("info")) return recording::run_info(info, std::cout, std::cerr);
-    if (app.got_subcommand("diff")) return recording::run_diff(diff, std::cout, std::cerr);
-    return recording::run_convert(convert, std::cout, std::cerr);
+    if (app.got_subcommand("info")) return recordings::run_info(info, std::cout, std::cerr);
+    if (app.got_subcommand("diff")) return recordings::run_diff(diff, std::cout, std::cerr);
+    return recordings::run_convert(convert, std::cout, std::cerr);
   });
 }

@@ -16,7 +16,7 @@
 #include "services/recorder/inspect/recording_diff.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 recordings::Opened open(const std::string& path, std::ostream& err) {
@@ -171,4 +171,4 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
   });
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -13,7 +13,7 @@ namespace CLI {
 class App;
 }
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// The command line of `rtd diff`.
 struct DiffRequest {
@@ -44,4 +44,4 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options);
 /// it is not MCAP; 3 when it is damaged or truncated, after everything readable was reported.
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -9,7 +9,7 @@
 #include "common/camera/recording/recording.hpp"
 #include "common/io/recording_forms.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 struct OtherFormat {
@@ -87,4 +87,4 @@ std::optional<RecordingReport> report_on_other_format(const std::filesystem::pat
   return report;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -14,7 +14,7 @@
 #include "common/ros2/names.hpp"
 #include "common/service/json_text.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -136,4 +136,4 @@ std::vector<std::string> differences(const std::string& type, io::ByteView a, io
   }
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -7,7 +7,7 @@
 
 #include "common/mcap/records.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// A piece of a payload, the 4-byte CDR header included.
 struct ByteRange {
@@ -22,4 +22,4 @@ std::vector<ByteRange> run_ranges(const std::string& type);
 /// of an unknown type: the first byte that differs.
 std::vector<std::string> differences(const std::string& type, io::ByteView a, io::ByteView b);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -15,7 +15,7 @@
 #include "common/service/command_line.hpp"
 #include "services/recorder/inspect/payload_diff.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -307,4 +307,4 @@ Json to_json(const RecordingDiff& diff) {
   return json;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -14,7 +14,7 @@
 #include "common/mcap/problem.hpp"
 #include "common/mcap/records.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// Identifies a message without its payload.
 struct Fingerprint {
@@ -109,4 +109,4 @@ void explain(RecordingDiff& diff, const io::ByteSource& a, const io::ByteSource&
 std::string to_text(const RecordingDiff& diff);
 nlohmann::ordered_json to_json(const RecordingDiff& diff);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -8,7 +8,7 @@
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/stream_reader.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using mcap::ChannelId;
@@ -227,4 +227,4 @@ RecordingReport report_on(const io::ByteSource& source, const ReportOptions& opt
   return report;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

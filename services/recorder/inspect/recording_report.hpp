@@ -12,7 +12,7 @@
 #include "common/mcap/problem.hpp"
 #include "common/mcap/records.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// How regular the messages of a channel are, by log_time.
 struct Timing {
@@ -115,4 +115,4 @@ std::string checksum_text(const RecordingReport& report);
 /// The problems, one per line, at most `most` of them.
 std::string problems_text(const std::vector<mcap::Problem>& problems, std::uint64_t count, std::size_t most);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

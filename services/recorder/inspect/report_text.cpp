@@ -7,7 +7,7 @@
 #include "common/service/command_line.hpp"
 #include "services/recorder/inspect/recording_report.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 constexpr std::size_t kShownProblems = 10;
@@ -232,4 +232,4 @@ Json to_json(const RecordingReport& report, const std::string& name) {
   return json;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -96,4 +96,4 @@ Json to_json(const TrajectoryDiff& diff) {
           {"only_b_ns", diff.only_b_ns}};
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

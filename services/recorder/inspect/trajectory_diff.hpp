@@ -9,7 +9,7 @@
 
 #include "common/geometry/trajectory.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 /// What counts as the same pose. The trajectories are not aligned.
 struct PoseTolerance {
@@ -36,4 +36,4 @@ TrajectoryDiff diff(const geometry::Trajectory& a, const geometry::Trajectory& b
 std::string to_text(const TrajectoryDiff& diff);
 nlohmann::ordered_json to_json(const TrajectoryDiff& diff);
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -48,7 +48,7 @@ TEST_P(DepthFactors, what_is_exported_comes_back_pixel_by_pixel) {
   const auto file = folder.path() / "out.mcap";
   std::vector<std::uint64_t> counts;
   const auto source = make_source(folder.uri());
-  EXPECT_EQ(recording::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { counts.push_back(n); }),
+  EXPECT_EQ(recordings::export_mcap(*source, file, mcap::Compression::kZstd, 0, [&](auto n) { counts.push_back(n); }),
             3U);
   EXPECT_THAT(counts, testing::ElementsAre(1U, 2U, 3U));
 
@@ -77,7 +77,7 @@ TEST(McapExport, leaves_an_existing_file_alone) {
   folder.three_frames();
   folder.write("out.mcap", "precious");
   const auto source = make_source(folder.uri());
-  EXPECT_THAT([&] { recording::export_mcap(*source, folder.path() / "out.mcap", mcap::Compression::kNone, 0); },
+  EXPECT_THAT([&] { recordings::export_mcap(*source, folder.path() / "out.mcap", mcap::Compression::kNone, 0); },
               ThrowsMessage<SourceError>(HasSubstr("out.mcap exists")));
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "out.mcap"), 8U);
 }
@@ -237,7 +237,7 @@ TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
   folder.three_frames();
   const auto bag = folder.path() / "bag";
   std::filesystem::create_directory(bag);
-  recording::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
+  recordings::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
   EXPECT_THAT(play_all("mcap:" + bag.string()).frames, SizeIs(3));
   std::filesystem::copy_file(bag / "bag_0.mcap", bag / "other.mcap");
   EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 recordings of")));
@@ -247,7 +247,7 @@ TEST(McapSource, names_the_topics_that_its_frames_are_not_made_of) {
   const SequenceFolder folder;
   folder.three_frames();
   const auto frames = folder.path() / "frames.mcap";
-  recording::export_mcap(*make_source(folder.uri()), frames, mcap::Compression::kNone, 0);
+  recordings::export_mcap(*make_source(folder.uri()), frames, mcap::Compression::kNone, 0);
   EXPECT_THAT(topics_beside_frames("mcap:" + frames.string()), ::testing::IsEmpty());
   McapFile own;
   own.add_own(*test::own_frame(1'000'000'000, 100, 5000), 1);

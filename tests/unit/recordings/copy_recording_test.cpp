@@ -10,7 +10,7 @@
 #include "tests/support/rosbag1/bag_writer.hpp"
 #include "tests/unit/recordings/sample_files.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using recordings::open;
@@ -136,4 +136,4 @@ TEST_F(CopyRecordingTest, nothing_is_overwritten) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

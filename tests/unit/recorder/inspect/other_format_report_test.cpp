@@ -8,7 +8,7 @@
 #include "common/camera/frame_source.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using ::testing::HasSubstr;
@@ -75,4 +75,4 @@ TEST(OtherFormatReport, is_for_files_of_other_programs_only) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

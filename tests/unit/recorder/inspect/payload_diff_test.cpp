@@ -12,7 +12,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/ros_codec/wire.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using testing::ElementsAre;
@@ -97,4 +97,4 @@ TEST(PayloadDiff, names_fields_and_lengths_of_standard_messages) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -10,7 +10,7 @@
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using testing::HasSubstr;
@@ -71,7 +71,8 @@ TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
 
 TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
   EXPECT_EQ(info(folder_.string()), 2);
-  EXPECT_THAT(err_.str(), HasSubstr("holds no recording (metadata.yaml, .mcap, .db3): name a recording or a folder with one\n"));
+  EXPECT_THAT(err_.str(),
+              HasSubstr("holds no recording (metadata.yaml, .mcap, .db3): name a recording or a folder with one\n"));
   file("a_0.mcap", recording_of(regular_messages("/pose", 5)));
   EXPECT_EQ(info(folder_.string()), 0);
   EXPECT_EQ(diff(folder_.string(), folder_.string()), 0);
@@ -122,4 +123,4 @@ TEST_F(RecordingCommandsTest, diff_compares_trajectories_and_no_two_kinds) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

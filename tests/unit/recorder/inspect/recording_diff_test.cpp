@@ -9,7 +9,7 @@
 #include "common/msg/tracking.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using testing::Contains;
@@ -147,4 +147,4 @@ TEST(RecordingDiff, two_runs_are_paired_by_frame_and_distinguished_by_their_time
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -6,7 +6,7 @@
 
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 using testing::HasSubstr;
@@ -147,4 +147,4 @@ TEST(RecordingReport, json_has_what_the_text_has) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

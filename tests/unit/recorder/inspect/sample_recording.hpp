@@ -7,7 +7,7 @@
 
 #include "common/mcap/writer.hpp"
 
-namespace rtd::recording {
+namespace rtd::recordings {
 
 struct SampleMessage {
   std::string topic;
@@ -48,4 +48,4 @@ inline std::vector<SampleMessage> regular_messages(const std::string& topic, std
   return messages;
 }
 
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

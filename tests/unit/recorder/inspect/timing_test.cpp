@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 TEST(Timing, reports_rate_median_and_the_gaps_of_a_channel) {
@@ -61,4 +61,4 @@ TEST(SharedCounter, channels_that_count_for_themselves_are_distinguished) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings

@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace rtd::recording {
+namespace rtd::recordings {
 namespace {
 
 constexpr std::int64_t kPeriodNs = 33'000'000;
@@ -71,4 +71,4 @@ TEST(TrajectoryDiff, lets_the_caller_say_what_is_the_same) {
 }
 
 }  // namespace
-}  // namespace rtd::recording
+}  // namespace rtd::recordings
