@@ -9,6 +9,7 @@
 #include "common/camera/recording/recording.hpp"
 #include "common/geometry/camera_model.hpp"
 #include "common/msg/ros.hpp"
+#include "common/ros_codec/byte_cursor.hpp"
 
 namespace rtd::camera {
 
@@ -30,6 +31,13 @@ ImageRead decode_color(const RecordedMessage& message);
 /// 0 = no measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of float_unit_m;
 /// what does not fit is no measurement. Throws SourceError as above.
 ImageRead decode_depth(const RecordedMessage& message, double float_unit_m);
+
+/// A depth image in RVL (Wilson, "Fast Lossless Depth Image Compression", ISS 2017), as ROS's compressedDepth writes
+/// it: width and height as 32-bit numbers, then runs of zeros and of differences to the pixel before, as numbers of
+/// variable length: 3 bits in a nibble, lowest first, its top bit set when more follow; eight nibbles, highest first,
+/// in a 32-bit little-endian word. Gives CV_16UC1. Never reads outside the bytes; throws ros::WireError for an image of
+/// no or more than 2^24 pixels, runs beyond its end, numbers too long and bytes that end early.
+cv::Mat decode_rvl(ros::Bytes bytes);
 
 /// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
 double depth_unit_m(const RecordedMessage& message, double float_unit_m);

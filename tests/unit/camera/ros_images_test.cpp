@@ -8,7 +8,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/rvl.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
 namespace rtd::camera {
