@@ -10,12 +10,13 @@
 #include "common/camera/live_uri.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/recording_source.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/camera/tum/tum_source.hpp"
-#include "common/io/text.hpp"
-#include "common/recordings/parts.hpp"
 #include "common/io/recording_forms.hpp"
-#include "common/camera/source_schemes.hpp"
+#include "common/io/text.hpp"
+#include "common/mcap/recording_file.hpp"
+#include "common/recordings/parts.hpp"
 
 namespace rtd::camera {
 
@@ -122,10 +123,15 @@ RecordingOptions recording_options(const SourceUri& uri) {
 }
 
 /// Bags and databases are read where they lie; all else, also folders and packed ones of these, as MCAP.
-std::unique_ptr<Recording> open_file(const SourceUri& uri) {
+std::unique_ptr<recordings::Reader> open_file(const SourceUri& uri) {
+  using recordings::Form;
   const bool lies_there = !std::filesystem::is_directory(uri.path) && !io::is_packed_name(uri.path);
-  if (lies_there && uri.scheme == "bag") return open_bag(uri.path);
-  return lies_there && uri.scheme == "db3" ? open_db3(uri.path) : open_mcap(uri.path);
+  const Form form = uri.scheme == "bag" ? Form::kBag : uri.scheme == "db3" ? Form::kDb3 : Form::kMcap;
+  try {
+    return recordings::open_reader(uri.path, lies_there ? form : Form::kMcap);
+  } catch (const mcap::RecordingFileError& error) {
+    throw SourceError(error.what());
+  }
 }
 
 std::unique_ptr<FrameSource> make_recording_source(const SourceUri& uri) {
@@ -142,7 +148,7 @@ bool is_recording(const SourceUri& uri) {
 std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (!is_recording(uri)) return {};
-  const std::unique_ptr<Recording> recording = open_file(uri);
+  const std::unique_ptr<recordings::Reader> recording = open_file(uri);
   std::vector<RecordedTopic> beside = recording->topics();
   std::vector<std::string> names = transform_topics(*recording);
   if (const std::string own = own_frames_topic(*recording); !own.empty()) {

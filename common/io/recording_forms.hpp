@@ -14,8 +14,9 @@ inline constexpr std::string_view kMcapMagic{"\x89MCAP0\r\n", 8};
 inline constexpr std::string_view kBagVersionLine = "#ROSBAG V2.0\n";
 inline constexpr std::string_view kBagMagic = kBagVersionLine.substr(0, kBagVersionLine.size() - 1);
 inline constexpr std::string_view kBagOfAnyVersion = kBagVersionLine.substr(0, kBagVersionLine.find('2'));
-inline constexpr std::string_view kDb3Magic = "SQLite format 3";  ///< a database of rosbag2
-inline constexpr std::size_t kMagicBytes = 16;                    ///< enough of a file to recognise each
+inline constexpr std::string_view kDb3Magic = "SQLite format 3";    ///< a database of rosbag2
+inline constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd";  ///< a frame of zstd
+inline constexpr std::size_t kMagicBytes = 16;                      ///< enough of a file to recognise each
 
 inline constexpr const char *kMcapExtension = ".mcap", *kBagExtension = ".bag", *kDb3Extension = ".db3";
 inline constexpr std::array<const char*, 2> kPackedExtensions = {".zstd", ".zst"};  ///< of rosbag2, of the program zstd

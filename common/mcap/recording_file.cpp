@@ -29,7 +29,7 @@ constexpr std::array kOtherFormats = {
         io::kDb3Magic,
         "a rosbag2 database: 'rtd info' shows what it contains, --source db3:FILE plays it, and 'rtd convert FILE.db3 "
         "NEW.mcap' makes an MCAP file of it"},
-    KnownFormat{"\x28\xb5\x2f\xfd", "compressed with zstd: unpack it first ('zstd -d')"},
+    KnownFormat{io::kZstdMagic, "compressed with zstd: unpack it first ('zstd -d')"},
     KnownFormat{"\x04\x22\x4d\x18", "compressed with LZ4: unpack it first ('lz4 -d')"},
     KnownFormat{"version https://git-lfs", "a pointer of Git LFS: fetch the file itself with 'git lfs pull'"},
     KnownFormat{"\x1f\x8b", "compressed with gzip: unpack it first ('gunzip')"},
@@ -75,14 +75,6 @@ fs::path recording_path(const fs::path& path) {
 std::string other_format(const std::string& path) {
   try {
     return other_format(io::FileSource(recording_path(path)));
-  } catch (const io::IoError& error) {
-    throw RecordingFileError(error.what());
-  }
-}
-
-bool looks_like_recording(const std::string& path) {
-  try {
-    return looks_like_recording(io::FileSource(recording_path(path)));
   } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());
   }

@@ -34,7 +34,5 @@ std::string other_format(const std::string& path);
 
 /// True when the file begins as an MCAP file does, or as one whose magic is damaged.
 bool looks_like_recording(const io::ByteSource& source);
-/// The same of a file, or of the only recording in a folder. Throws RecordingFileError.
-bool looks_like_recording(const std::string& path);
 
 }  // namespace rtd::mcap

@@ -5,13 +5,11 @@
 #include <zstd.h>
 
 #include <algorithm>
-#include <array>
+#include <optional>
 
-#include "common/io/recording_forms.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
-#include "common/rosbag1/bag_reader.hpp"
-#include "common/rosbag2/db3_reader.hpp"
+#include "common/recordings/indexed_reader.hpp"
 
 namespace rtd::recordings {
 namespace fs = std::filesystem;
@@ -19,20 +17,6 @@ namespace {
 
 constexpr std::size_t kMaxDamages = 100;
 constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
-
-std::string first_bytes(const fs::path& file) {
-  std::array<std::byte, 16> begin{};
-  const std::size_t count = io::FileSource(file).read(0, begin);
-  return {reinterpret_cast<const char*>(begin.data()), count};
-}
-
-mcap::Timestamp time_of(std::int64_t time_ns) {
-  return static_cast<mcap::Timestamp>(std::max<std::int64_t>(0, time_ns));
-}
-
-io::ByteView view_of(const auto& bytes) {
-  return std::as_bytes(std::span(bytes.data(), bytes.size()));
-}
 
 /// Reports every thousandth message, and the end.
 class Steps {
@@ -56,10 +40,8 @@ class Steps {
 Import::Import(io::ByteSink& sink, bool packed_messages)
     : writer_(sink, {.profile = "ros2"}), packed_messages_(packed_messages) {}
 
-void Import::add(const fs::path& file, const std::string& name, const Share& progress) {
-  const std::string begin = first_bytes(file);
-  if (begin.starts_with(io::kDb3Magic)) return add_db3(file, name, progress);
-  if (begin.starts_with(io::kBagMagic)) return add_bag(file, name, progress);
+void Import::add(const fs::path& file, Form form, const std::string& name, const Share& progress) {
+  if (form == Form::kBag || form == Form::kDb3) return add_indexed(file, form, name, progress);
   mcap::require_recording(io::FileSource(file), name);
   add_mcap(file, name, progress);
 }
@@ -119,63 +101,31 @@ void Import::add_mcap(const fs::path& file, const std::string& name, const Share
   }
 }
 
-void Import::add_db3(const fs::path& file, const std::string& name, const Share& progress) {
-  try {
-    rosbag2::Db3Reader reader(file);
-    std::map<std::int64_t, mcap::ChannelId> ids;
-    std::vector<std::string> topics;
-    for (const auto& [id, topic] : reader.topics()) {
-      mcap::Channel entry{0, 0, topic.name, topic.serialization_format, {}};
-      if (!topic.offered_qos.empty()) entry.metadata["offered_qos_profiles"] = topic.offered_qos;
-      ids[id] = channel({0, topic.type, topic.definition_encoding, topic.definition}, std::move(entry));
-      topics.push_back(topic.name);
-    }
-    const std::vector<rosbag2::Db3Place> places = reader.messages(topics);
-    Steps steps(progress, places.size());
-    std::uint32_t sequence = 0;
-    for (const rosbag2::Db3Place& place : places) {
-      try {
-        const std::vector<std::uint8_t> bytes = reader.read(place);
-        const mcap::Timestamp time = time_of(place.time_ns);
-        write({ids.at(place.topic), ++sequence, time, time, view_of(bytes)}, reader.topics().at(place.topic).name);
-      } catch (const rosbag2::Db3Error& error) {
-        if (damages_.size() < kMaxDamages) note(name + ": " + error.what());
-      }
-      steps.step();
-    }
-    for (const std::string& damage : reader.damages()) note(damage);
-  } catch (const rosbag2::Db3Error& error) {
-    throw mcap::RecordingFileError(error.what());
+void Import::add_indexed(const fs::path& file, Form form, const std::string& name, const Share& progress) {
+  const std::unique_ptr<IndexedReader> reader = open_indexed(file, form);
+  std::map<std::int64_t, mcap::ChannelId> ids;
+  for (const auto& [id, stored] : reader->channels()) {
+    ids[id] = channel({0, stored.type, stored.schema_encoding, stored.schema_text},
+                      {0, 0, stored.topic, stored.encoding, stored.metadata});
   }
-}
-
-void Import::add_bag(const fs::path& file, const std::string& name, const Share& progress) {
-  try {
-    rosbag1::BagReader reader(file);
-    std::map<std::uint32_t, mcap::ChannelId> ids;
-    std::vector<std::string> topics;
-    for (const auto& [id, connection] : reader.connections()) {
-      ids[id] = channel({0, connection.type, "ros1msg", connection.definition},
-                        {0, 0, connection.topic, "ros1", {{"md5sum", connection.md5sum}}});
+  const std::vector<std::string> of_file = reader->take_damages();
+  std::uint32_t sequence = 0;
+  const auto note_messages = [&] {
+    for (const std::string& damage : reader->take_damages()) {
+      if (form == Form::kBag) ++sequence;  // `rtd info` counts the gap as a lost message
+      if (damages_.size() < kMaxDamages) note(name + ": " + damage);
     }
-    for (const rosbag1::Topic& topic : reader.topics()) topics.push_back(topic.name);
-    const std::vector<rosbag1::MessagePlace> places = reader.messages(topics);
-    Steps steps(progress, places.size());
-    std::uint32_t sequence = 0;
-    for (const rosbag1::MessagePlace& place : places) {
-      try {
-        const mcap::Timestamp time = time_of(place.time_ns);
-        write({ids.at(place.connection), ++sequence, time, time, view_of(reader.read(place))},
-              reader.connections().at(place.connection).topic);
-      } catch (const rosbag1::BagError& error) {
-        if (damages_.size() < kMaxDamages) note(name + ": " + error.what());
-      }
-      steps.step();
-    }
-    for (const std::string& damage : reader.damages()) note(damage);
-  } catch (const rosbag1::BagError& error) {
-    throw mcap::RecordingFileError(error.what());
+  };
+  Steps steps(progress, reader->play_all());
+  while (const std::optional<StoredMessage> stored = reader->next_stored()) {
+    note_messages();
+    const auto time = static_cast<mcap::Timestamp>(std::max<std::int64_t>(0, stored->recorded_ns));
+    write({ids.at(stored->channel), ++sequence, time, time, std::as_bytes(stored->bytes)},
+          reader->channels().at(stored->channel).topic);
+    steps.step();
   }
+  note_messages();
+  for (const std::string& damage : of_file) note(damage);
 }
 
 }  // namespace rtd::recordings

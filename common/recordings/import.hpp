@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/mcap/writer.hpp"
+#include "common/recordings/form.hpp"
 
 namespace rtd::recordings {
 
@@ -23,9 +24,9 @@ class Import {
   /// `sink` is empty and outlives this. `packed_messages`: each message is a zstd frame.
   Import(io::ByteSink& sink, bool packed_messages);
 
-  /// Adds a file: MCAP, rosbag2 database or ROS 1 bag by its first bytes; `name` is for messages. Throws
-  /// mcap::RecordingFileError when it is none of them or cannot be used at all, io::IoError when the sink fails.
-  void add(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  /// Adds a file of this form; `name` is for messages. Throws mcap::RecordingFileError when it is no MCAP file,
+  /// database or bag or cannot be used at all, io::IoError when the sink fails.
+  void add(const std::filesystem::path& file, Form form, const std::string& name, const Share& progress);
   /// Ends the MCAP file.
   void close() { writer_.close(); }
   /// What could not be copied, one line each.
@@ -36,8 +37,7 @@ class Import {
   using Definition = std::tuple<std::string, std::string, std::string>;  ///< name, encoding, text
 
   void add_mcap(const std::filesystem::path& file, const std::string& name, const Share& progress);
-  void add_db3(const std::filesystem::path& file, const std::string& name, const Share& progress);
-  void add_bag(const std::filesystem::path& file, const std::string& name, const Share& progress);
+  void add_indexed(const std::filesystem::path& file, Form form, const std::string& name, const Share& progress);
   mcap::ChannelId channel(const mcap::Schema& schema, mcap::Channel channel);
   void write(mcap::Message message, const std::string& topic);
 

@@ -2,13 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/recordings/open.hpp"
 
-#include <array>
+#include <unistd.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
 #include <numeric>
 #include <utility>
 
-#include "common/io/recording_forms.hpp"
+#include "common/io/byte_sink.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/recording_file.hpp"
+#include "common/recordings/form.hpp"
 #include "common/recordings/import.hpp"
 #include "common/recordings/parts.hpp"
 
@@ -18,26 +25,84 @@ namespace {
 
 using mcap::RecordingFileError;
 
+/// A file of its own in the folder for temporary files (TMPDIR), removed with this object: what has it open then keeps
+/// its content.
+class TemporaryFile {
+ public:
+  TemporaryFile() {
+    std::string name = (fs::temp_directory_path() / "rtd_recording_XXXXXX").string();
+    const int descriptor = mkstemp(name.data());
+    if (descriptor < 0) throw io::IoError(errno, name + " cannot be made (TMPDIR names another folder)");
+    close(descriptor);
+    path_ = name;
+  }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct FreeStream {
+  void operator()(ZSTD_DStream* stream) const { ZSTD_freeDStream(stream); }
+};
+
+std::uint64_t room_at(const fs::path& file) {
+  std::error_code none;
+  const fs::space_info space = fs::space(file.parent_path(), none);
+  return none ? UINT64_MAX : space.available / 10 * 9;
+}
+
+/// Appends what the zstd frames in `source` hold. At most nine tenths of the space that is free where `sink` is are
+/// filled. Throws io::IoError (disk, no room). Returns what is damaged; empty for a whole file.
+std::string unpack(const io::ByteSource& source, io::FileSink& sink, const Progress& progress) {
+  const std::unique_ptr<ZSTD_DStream, FreeStream> stream(ZSTD_createDStream());
+  std::vector<std::byte> in(ZSTD_DStreamInSize()), out(ZSTD_DStreamOutSize());
+  const std::uint64_t room = room_at(sink.path());
+  std::size_t unfinished = 1;  // zstd's hint: 0 at the end of a frame
+  std::uint64_t offset = 0;
+  while (const std::size_t count = source.read(offset, in)) {
+    ZSTD_inBuffer input{in.data(), count, 0};
+    while (input.pos < input.size) {
+      ZSTD_outBuffer output{out.data(), out.size(), 0};
+      unfinished = ZSTD_decompressStream(stream.get(), &output, &input);
+      if (ZSTD_isError(unfinished) != 0) {
+        return std::string("damaged near byte ") + std::to_string(offset + input.pos) + ": " +
+               ZSTD_getErrorName(unfinished) + "; what follows is lost";
+      }
+      if (sink.position() + output.pos > room) throw io::IoError(ENOSPC, "unpacked it takes more room than is free");
+      sink.append({io::ByteView(out).first(output.pos)});
+    }
+    offset += count;
+    progress(offset);
+  }
+  return unfinished == 0 ? std::string() : "it ends within a zstd frame; what follows is lost";
+}
+
 /// A file of the recording as it lies there, or unpacked.
 struct Plain {
   std::unique_ptr<TemporaryFile> unpacked;
   fs::path path;
+  Form form{};
 };
-
-bool is_mcap(const fs::path& file) {
-  return mcap::looks_like_recording(io::FileSource(file));
-}
 
 /// Maps the two passes over the files, unpacking and importing, to bytes of them all.
 class Passes {
  public:
   Passes(const Parts& parts, const Progress& progress) : progress_(progress) {
     for (const fs::path& file : parts.files) {
-      packed_ = packed_ || is_packed(io::FileSource(file));
+      forms_.push_back(form_of(io::FileSource(file)));
       sizes_.push_back(fs::file_size(file));
     }
+    packed_ = std::ranges::count(forms_, Form::kPacked) > 0;
   }
   bool packed() const { return packed_; }
+  Form form(std::size_t file) const { return forms_[file]; }
   void unpacked(std::size_t file, std::uint64_t bytes) const { progress_((before(file) + bytes) / 2); }
   void imported(std::size_t file, double share) const {
     const std::uint64_t done = before(file) + static_cast<std::uint64_t>(share * static_cast<double>(sizes_[file]));
@@ -50,18 +115,19 @@ class Passes {
   }
 
   const Progress& progress_;
+  std::vector<Form> forms_;
   std::vector<std::uint64_t> sizes_;
   bool packed_ = false;
 };
 
-Plain plain_file(const fs::path& file, Opened& opened, const Progress& progress) {
-  const io::FileSource source(file);
-  if (!is_packed(source)) return {nullptr, file};
-  Plain plain{std::make_unique<TemporaryFile>(), {}};
+Plain plain_file(const fs::path& file, Form form, Opened& opened, const Progress& progress) {
+  if (form != Form::kPacked) return {nullptr, file, form};
+  Plain plain{std::make_unique<TemporaryFile>(), {}, {}};
   plain.path = plain.unpacked->path();
   io::FileSink sink(plain.path, io::IfExists::kReplace);
-  const std::string damage = unpack(source, sink, progress);
+  const std::string damage = unpack(io::FileSource(file), sink, progress);
   if (!damage.empty()) opened.damages.push_back(file.string() + ": " + damage);
+  plain.form = form_of(io::FileSource(plain.path));
   return plain;
 }
 
@@ -88,7 +154,8 @@ void import(const Parts& parts, const std::vector<Plain>& files, io::ByteSink& s
             const Passes& passes) {
   Import importing(sink, parts.packed_messages);
   for (std::size_t i = 0; i < files.size(); ++i) {
-    importing.add(files[i].path, parts.files[i].string(), [&](double share) { passes.imported(i, share); });
+    importing.add(files[i].path, files[i].form, parts.files[i].string(),
+                  [&](double share) { passes.imported(i, share); });
   }
   importing.close();
   for (const std::string& damage : importing.damages()) opened.damages.push_back(damage);
@@ -101,8 +168,9 @@ Opened open_parts(const Parts& parts, const Progress& progress) {
   std::vector<Plain> files;
   bool all_mcap = true;
   for (std::size_t i = 0; i < parts.files.size(); ++i) {
-    files.push_back(plain_file(parts.files[i], opened, [&](std::uint64_t bytes) { passes.unpacked(i, bytes); }));
-    all_mcap = all_mcap && is_mcap(files.back().path);
+    files.push_back(
+        plain_file(parts.files[i], passes.form(i), opened, [&](std::uint64_t bytes) { passes.unpacked(i, bytes); }));
+    all_mcap = all_mcap && files.back().form == Form::kMcap;
   }
   opened.imported = description_of(parts, passes.packed());
   if (all_mcap && files.size() == 1 && !parts.packed_messages) {
@@ -147,12 +215,7 @@ Opened open(const std::string& path, const Progress& progress) {
 bool is_recording(const std::string& path) {
   if (std::error_code error; fs::is_directory(path, error)) return true;
   try {
-    const io::FileSource source(path);
-    if (is_packed(source) || mcap::looks_like_recording(source)) return true;
-    std::array<std::byte, io::kMagicBytes> begin{};
-    const std::size_t count = source.read(0, begin);
-    const std::string_view text(reinterpret_cast<const char*>(begin.data()), count);
-    return text.starts_with(io::kDb3Magic) || text.starts_with(io::kBagMagic);
+    return form_of(io::FileSource(path)) != Form::kOther;
   } catch (const io::IoError& error) {
     throw RecordingFileError(error.what());
   }

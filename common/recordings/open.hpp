@@ -2,14 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "common/io/byte_source.hpp"
-#include "common/recordings/unpack.hpp"
 
 namespace rtd::recordings {
+
+/// Called now and then with the bytes of the recording's files that have been read.
+using Progress = std::function<void(std::uint64_t bytes)>;
 
 /// A recording that can be read as an MCAP file.
 struct Opened {

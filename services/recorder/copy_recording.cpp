@@ -140,8 +140,8 @@ class Copy {
 
 }  // namespace
 
-CopiedRecording copy_recording(const recordings::Opened& source, const std::filesystem::path& file,
-                               mcap::Compression compression, const std::function<void(std::uint64_t)>& progress) {
+CopiedRecording copy_recording(const Opened& source, const std::filesystem::path& file, mcap::Compression compression,
+                               const std::function<void(std::uint64_t)>& progress) {
   io::AtomicFile sink(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail});
   CopiedRecording result;
   result.damages = source.damages;

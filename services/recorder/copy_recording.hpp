@@ -25,7 +25,7 @@ struct CopiedRecording {
 /// words: CDR byte for byte, ROS 1 messages turned into CDR by the definitions in the bag, other encodings as they are;
 /// times and QoS stay. The file is FILE.partial until it is complete. `progress` gets the bytes of the messages read.
 /// Throws io::IoError: it exists, disk.
-CopiedRecording copy_recording(const recordings::Opened& source, const std::filesystem::path& file,
-                               mcap::Compression compression, const std::function<void(std::uint64_t)>& progress);
+CopiedRecording copy_recording(const Opened& source, const std::filesystem::path& file, mcap::Compression compression,
+                               const std::function<void(std::uint64_t)>& progress);
 
 }  // namespace rtd::recordings

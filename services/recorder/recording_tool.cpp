@@ -5,7 +5,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "common/camera/recording/recording.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/io/recording_forms.hpp"
@@ -80,8 +79,8 @@ service::ExitCode copy(const ConvertOptions& options, const std::string& path, s
   const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
   if (std::filesystem::exists(destination.path))
     throw SourceError(destination.path + " exists; name a new file or remove it");
-  service::Progress opening(err, "opening", recordings::size_of(path));
-  const recordings::Opened source = recordings::open(path, [&](std::uint64_t bytes) { opening.reach(bytes); });
+  service::Progress opening(err, "opening", size_of(path));
+  const Opened source = open(path, [&](std::uint64_t bytes) { opening.reach(bytes); });
   service::Progress progress(err, "bytes", source.source->size());
   const CopiedRecording copied = copy_recording(source, destination.path, compression.value(),
                                                 [&](std::uint64_t bytes) { progress.reach(bytes); });
@@ -160,7 +159,7 @@ int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& 
     const auto source = camera::make_source(uri);
     const std::uint64_t frames = write(*source, options, err);
     print(options, frames, *source, out, err);
-    for (const camera::RecordedTopic& topic : camera::topics_beside_frames(uri)) {
+    for (const RecordedTopic& topic : camera::topics_beside_frames(uri)) {
       err << "rtd convert: left out: " << topic.name << " (" << topic.type << ", " << topic.messages
           << " messages): only frames and ground truth are written here; 'rtd convert " << options.source
           << " NEW.mcap' carries all topics\n";

@@ -7,25 +7,83 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <map>
 #include <ostream>
 #include <set>
 
 #include "common/io/recording_forms.hpp"
 #include "common/recordings/parts.hpp"
+#include "common/recordings/reader.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
+#include "common/ros2/type_description.hpp"
+#include "common/ros2/type_layout.hpp"
+#include "common/ros_codec/message_definition.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
-#include "services/topics/core/recorded_types.hpp"
 #include "services/topics/core/topic_report.hpp"
 
 namespace rtd::topics {
 namespace {
 
 namespace fs = std::filesystem;
-using Types = std::map<std::string, RecordedType>;
+using recordings::RecordedMessage;
+using recordings::RecordedTopic;
 
 constexpr std::size_t kShownErrors = 5;
+
+/// How the messages of a recorded topic are read.
+struct RecordedType {
+  std::string type;           ///< "package/Type"
+  ros::MessageFields fields;  ///< of the type and all that it is made of
+  std::string problem;        ///< why they cannot be read; empty when they can
+};
+
+using Types = std::map<std::string, RecordedType>;  ///< by topic
+
+/// The text of IDL defines the same samples as ours, or does not define the type.
+bool same_layout(const RecordedTopic& topic) {
+  const std::string name = topic.type.substr(topic.type.find('/') + 1) + '_';
+  const std::string recorded = ros2::layout_in(topic.schema_text, name);
+  const std::string ours = ros2::layout_in(ros2::own_idl(), name);
+  return recorded.empty() || ours.empty() || recorded == ours;
+}
+
+void take_known(RecordedType& type, const RecordedTopic& topic) {
+  if (ros2::fields_of(topic.type) == nullptr) {
+    type.problem =
+        topic.schema_text.empty()
+            ? "the recording does not define " + topic.type + ", and it is not known here"
+            : topic.type + " is defined as " + topic.schema_encoding + ", which is not read, and it is not known here";
+  } else if (!same_layout(topic)) {
+    type.problem = topic.type + " was recorded by another version, with other fields";
+  } else {
+    type.fields = ros2::message_fields();
+  }
+}
+
+/// By the definition in the recording (ros1msg, ros2msg); without one, or with one in IDL, by the types that are known
+/// here. A type of our own must have the layout that it has in the recording.
+RecordedType type_of(const RecordedTopic& topic) {
+  RecordedType type{ros::package_and_type(topic.type), {}, {}};
+  const bool defined = topic.schema_encoding == "ros1msg" || topic.schema_encoding == "ros2msg";
+  if (!defined || topic.schema_text.empty()) {
+    take_known(type, topic);
+    return type;
+  }
+  try {
+    type.fields = ros::parse_definition(type.type, topic.schema_text);
+  } catch (const ros::DefinitionError& error) {
+    type.problem = error.what();
+  }
+  return type;
+}
+
+Types types_of(const recordings::Reader& recording) {
+  Types types;
+  for (const RecordedTopic& topic : recording.topics()) types.try_emplace(topic.name, type_of(topic));
+  return types;
+}
 
 /// Prints messages of several topics.
 class RecordingPrinter {
@@ -33,7 +91,7 @@ class RecordingPrinter {
   RecordingPrinter(const TopicsRequest& request, const Types& types, std::ostream& out, std::ostream& err)
       : request_(request), types_(types), out_(out), err_(err) {}
 
-  void print(const camera::RecordedMessage& message) {
+  void print(const RecordedMessage& message) {
     try {
       const RecordedType& type = types_.at(message.topic);
       const auto json = ros2::message_json(type.fields, type.type, message.wire, message.bytes, request_.max_array);
@@ -59,7 +117,7 @@ class RecordingPrinter {
   std::uint64_t unreadable() const { return unreadable_; }
 
  private:
-  static std::string title_of(const camera::RecordedMessage& message, const RecordedType& type) {
+  static std::string title_of(const RecordedMessage& message, const RecordedType& type) {
     return fmt::format("# {} {} at {}.{:09d} s\n", ros2::ros_topic(message.topic), type.type,
                        message.recorded_ns / 1'000'000'000,
                        std::max<std::int64_t>(0, message.recorded_ns % 1'000'000'000));
@@ -113,12 +171,12 @@ std::vector<std::string> all_topics(const Types& types, std::ostream& err) {
   return chosen;
 }
 
-void print_all(const TopicsRequest& request, camera::Recording& recording, RecordingPrinter& printer,
+void print_all(const TopicsRequest& request, recordings::Reader& recording, RecordingPrinter& printer,
                const std::ostream& out) {
   const std::uint64_t most = request.once ? 1 : request.count;
   std::optional<std::int64_t> first_ns;
   while (out && (most == 0 || printer.printed() < most)) {
-    const std::optional<camera::RecordedMessage> message = recording.next();
+    const std::optional<RecordedMessage> message = recording.next();
     if (!message) return;
     if (!first_ns) first_ns = message->recorded_ns;
     const double seconds = static_cast<double>(message->recorded_ns - *first_ns) * 1e-9;
@@ -136,7 +194,7 @@ bool is_recording(const std::string& argument) {
 }
 
 int echo_recording(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  const std::unique_ptr<camera::Recording> recording = camera::open_any(request.topics.front());
+  const std::unique_ptr<recordings::Reader> recording = recordings::open_reader(request.topics.front());
   const Types types = types_of(*recording);
   const std::vector<std::string> chosen =
       request.topics.size() > 1 ? named_topics(request, types, err) : all_topics(types, err);

@@ -16,7 +16,7 @@ bool is_recording(const std::string& argument);
 /// Prints the messages of a recording, request.topics.front(), in the order of recording: those of the topics named
 /// behind it, else of all whose types can be read. Exit code 0; 1: no message of these topics; 2: no recording, no such
 /// topic, a topic whose type cannot be read; 3: damage, or a message that does not match its type. Throws
-/// camera::SourceError when the file cannot be read.
+/// mcap::RecordingFileError when the file cannot be read.
 int echo_recording(const TopicsRequest& request, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::topics

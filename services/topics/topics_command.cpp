@@ -9,7 +9,7 @@
 #include <ostream>
 #include <set>
 
-#include "common/camera/frame_source.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
@@ -84,7 +84,7 @@ int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostre
 }
 
 int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& err) {
-  return service::report_errors<service::ConfigError, bus::BusError, camera::SourceError>("rtd topics", err, [&] {
+  return service::report_errors<service::ConfigError, bus::BusError, mcap::RecordingFileError>("rtd topics", err, [&] {
     if (request.action == "echo") {
       if (is_recording(request.topics.front())) return echo_recording(request, out, err);
       if (request.topics.size() > 1) throw service::ConfigError(kOneTopic + request.topics.front());

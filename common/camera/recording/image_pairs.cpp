@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <utility>
 
 #include "common/camera/calibration.hpp"
@@ -7,7 +8,6 @@
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/driver_topics.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
-#include "common/camera/recording/recorded_extrinsics.hpp"
 #include "common/camera/recording/recording_source.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/geometry/transform_log.hpp"
@@ -25,7 +25,7 @@ double float_unit_of(const RecordedTopic& depth) {
 }
 
 /// The unit of 16-bit depth that the RealSense SDK recorded beside it; empty when there is none. Throws SourceError.
-std::optional<double> sdk_depth_unit_m(Recording& recording, const std::string& depth) {
+std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth) {
   const std::string topic = sdk_depth_unit_topic(depth);
   if (topic.empty() || topic_named(recording, topic) == nullptr) return std::nullopt;
   constexpr float kMin_m = 1e-6F, kMax_m = 0.1F;
@@ -38,9 +38,70 @@ std::optional<double> sdk_depth_unit_m(Recording& recording, const std::string& 
                     " m, allowed is 0.000001 to 0.1; give another with depth_factor in ?calibration=FILE");
 }
 
+/// "/device_0/sensor_1/Color_0/image/data" -> "/device_0/sensor_1/Color_0/tf/"; empty for other topics.
+std::string sdk_transforms(const std::string& topic) {
+  constexpr const char* kData = "/image/data";
+  if (!topic.starts_with("/device_") || !topic.ends_with(kData)) return {};
+  return topic.substr(0, topic.rfind(kData)) + "/tf/";
+}
+
+std::optional<Eigen::Isometry3d> sdk_transform(recordings::Reader& recording, const std::string& topic) {
+  const RecordedTopic* const there = topic_named(recording, topic);
+  if (there == nullptr || there->type != "geometry_msgs/Transform") return std::nullopt;
+  const RecordedMessage message = first_of(recording, topic);
+  return geometry::to_isometry(ros::decode<msg::RosTransform>(message.wire, message.bytes));
+}
+
+/// The SDK records for each stream how points come from a reference stream (of the number at the end of the topic) into
+/// it: T_stream_reference.
+std::optional<Eigen::Isometry3d> sdk_extrinsics(recordings::Reader& recording, const ImageOrigin& color,
+                                                const ImageOrigin& depth) {
+  const std::string of_color = sdk_transforms(color.topic), of_depth = sdk_transforms(depth.topic);
+  if (of_color.empty() || of_depth.empty()) return std::nullopt;
+  for (const RecordedTopic& topic : recording.topics()) {
+    if (!topic.name.starts_with(of_depth)) continue;
+    const std::string reference = topic.name.substr(of_depth.size());
+    const auto T_depth_reference = sdk_transform(recording, topic.name);
+    const auto T_color_reference = sdk_transform(recording, of_color + reference);
+    if (T_depth_reference && T_color_reference) return *T_color_reference * T_depth_reference->inverse();
+  }
+  return std::nullopt;
+}
+
+std::optional<Eigen::Isometry3d> tf_extrinsics(recordings::Reader& recording, const std::vector<std::string>& topics,
+                                               const ImageOrigin& color, const ImageOrigin& depth) {
+  if (topics.empty()) return std::nullopt;
+  geometry::TransformLog transforms;
+  recording.play(topics);
+  while (const std::optional<RecordedMessage> message = recording.next()) {
+    try {
+      transforms.add(ros::decode<msg::TFMessage>(message->wire, message->bytes));
+    } catch (const ros::WireError&) {
+      continue;  // counted when it is played
+    }
+    if (auto T_color_depth = transforms.between(color.frame_id, depth.frame_id)) return T_color_depth;
+  }
+  return std::nullopt;
+}
+
+/// T_color_depth of a recording: identity for images in one frame, otherwise by the transforms that the RealSense SDK
+/// records with each stream, otherwise by tf (tf_static first). Reads transforms until it is found, whatever else was
+/// played before; empty when it is not. Throws SourceError.
+std::optional<Eigen::Isometry3d> recorded_extrinsics(recordings::Reader& recording, const ImageOrigin& color,
+                                                     const ImageOrigin& depth) {
+  if (same_place(color, depth)) return Eigen::Isometry3d::Identity();
+  if (auto T_color_depth = sdk_extrinsics(recording, color, depth)) return T_color_depth;
+  if (!names_a_place(color.frame_id) || !names_a_place(depth.frame_id)) return std::nullopt;
+  const std::vector<std::string> all = transform_topics(recording);
+  std::vector<std::string> lasting = all;
+  std::erase_if(lasting, [](const std::string& topic) { return !topic.ends_with("tf_static"); });
+  if (auto T_color_depth = tf_extrinsics(recording, lasting, color, depth)) return T_color_depth;
+  return tf_extrinsics(recording, all, color, depth);
+}
+
 class ImagePairs final : public RecordingSource {
  public:
-  ImagePairs(std::string uri, std::unique_ptr<Recording> recording, const RecordingOptions& options);
+  ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> recording, const RecordingOptions& options);
 
   /// Of what was played so far.
   geometry::Trajectory groundtruth() const override;
@@ -69,11 +130,11 @@ class ImagePairs final : public RecordingSource {
   std::int64_t last_ns_ = 0;
 };
 
-ImagePairs::ImagePairs(std::string uri, std::unique_ptr<Recording> played, const RecordingOptions& options)
+ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> played, const RecordingOptions& options)
     : RecordingSource(std::move(uri), std::move(played)),
       topics_(choose_topics(*recording_, options.topics)),
       pairer_({.tolerance_ns = options.tolerance_ns}) {
-  Recording& recording = *recording_;
+  recordings::Reader& recording = *recording_;
   float_unit_m_ = float_unit_of(*topic_named(recording, topics_.depth));
   describe_rate(topics_.color);
   try {
@@ -192,7 +253,7 @@ geometry::Trajectory ImagePairs::groundtruth() const {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> make_image_pairs(std::string uri, std::unique_ptr<Recording> recording,
+std::unique_ptr<FrameSource> make_image_pairs(std::string uri, std::unique_ptr<recordings::Reader> recording,
                                               const RecordingOptions& options) {
   return std::make_unique<ImagePairs>(std::move(uri), std::move(recording), options);
 }

@@ -45,7 +45,7 @@ std::shared_ptr<const msg::FrameView> to_frame_message(const RecordedMessage& me
 /// bytes as in memory.
 class OwnFrames final : public RecordingSource {
  public:
-  OwnFrames(std::string uri, std::unique_ptr<Recording> recording);
+  OwnFrames(std::string uri, std::unique_ptr<recordings::Reader> recording);
 
   /// None: slam's estimate of the path is not ground truth.
   geometry::Trajectory groundtruth() const override { return {}; }
@@ -60,7 +60,7 @@ class OwnFrames final : public RecordingSource {
   std::optional<std::int64_t> last_ns_;
 };
 
-OwnFrames::OwnFrames(std::string uri, std::unique_ptr<Recording> recording)
+OwnFrames::OwnFrames(std::string uri, std::unique_ptr<recordings::Reader> recording)
     : RecordingSource(std::move(uri), std::move(recording)) {
   const std::string topic = own_frames_topic(*recording_);
   const RecordedMessage first = first_of(*recording_, topic);
@@ -120,14 +120,14 @@ std::optional<SourceFrame> OwnFrames::decode() {
 
 }  // namespace
 
-std::string own_frames_topic(const Recording& recording) {
+std::string own_frames_topic(const recordings::Reader& recording) {
   for (const RecordedTopic& topic : recording.topics()) {
     if (topic.type.starts_with(kTypeStem) && topic.messages > 0) return topic.name;
   }
   return {};
 }
 
-std::unique_ptr<FrameSource> make_own_frames(std::string uri, std::unique_ptr<Recording> recording) {
+std::unique_ptr<FrameSource> make_own_frames(std::string uri, std::unique_ptr<recordings::Reader> recording) {
   return std::make_unique<OwnFrames>(std::move(uri), std::move(recording));
 }
 

@@ -11,11 +11,7 @@
 namespace rtd::camera {
 namespace {
 
-void replace(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
-    text.replace(at, from.size(), to);
-}
-
+using recordings::Reader;
 using Topics = std::vector<RecordedTopic>;
 using Fits = bool (*)(const RecordedTopic&);
 
@@ -32,11 +28,11 @@ bool is_info(const RecordedTopic& topic) {
   return topic.type == "sensor_msgs/CameraInfo";
 }
 
-SourceError error(const Recording& recording, const std::string& cause) {
+SourceError error(const Reader& recording, const std::string& cause) {
   return SourceError(recording.name() + ": " + cause + "; its topics are:\n" + list_topics(recording));
 }
 
-Topics fitting(const Recording& recording, Fits fits) {
+Topics fitting(const Reader& recording, Fits fits) {
   Topics chosen;
   for (const RecordedTopic& topic : recording.topics()) {
     if (topic.messages > 0 && fits(topic)) chosen.push_back(topic);
@@ -48,7 +44,7 @@ bool contains(const Topics& topics, const std::string& name) {
   return std::ranges::any_of(topics, [&name](const RecordedTopic& topic) { return topic.name == name; });
 }
 
-std::string check_named(const Recording& recording, const std::string& key, const std::string& name, Fits fits) {
+std::string check_named(const Reader& recording, const std::string& key, const std::string& name, Fits fits) {
   const RecordedTopic* topic = topic_named(recording, name);
   if (topic == nullptr) throw error(recording, "has no topic " + name + " (" + key + "=)");
   if (!fits(*topic)) throw error(recording, key + "=" + name + " is of type " + topic->type + ", which does not fit");
@@ -58,7 +54,7 @@ std::string check_named(const Recording& recording, const std::string& key, cons
 
 constexpr const char* kNameThem = "name them: ?color=TOPIC&depth=TOPIC";
 
-SourceError several(const Recording& recording, const std::string& what, const std::vector<std::string>& candidates) {
+SourceError several(const Reader& recording, const std::string& what, const std::vector<std::string>& candidates) {
   std::string text = "has several topics that could be " + what + ": ";
   for (const std::string& candidate : candidates) text += candidate + (&candidate == &candidates.back() ? "" : ", ");
   return error(recording, text + "; " + kNameThem);
@@ -71,20 +67,20 @@ std::vector<std::string> names_of(const Topics& topics) {
 }
 
 /// The one named, else all that fit.
-std::vector<std::string> image_candidates(const Recording& recording, const std::string& key, const std::string& named,
+std::vector<std::string> image_candidates(const Reader& recording, const std::string& key, const std::string& named,
                                           Fits fits) {
   if (named.empty()) return names_of(fitting(recording, fits));
   return {check_named(recording, key, named, is_image)};
 }
 
 /// The one candidate; the user must choose among several.
-std::string only(const Recording& recording, const std::string& key, const std::vector<std::string>& candidates) {
+std::string only(const Reader& recording, const std::string& key, const std::vector<std::string>& candidates) {
   if (candidates.size() == 1) return candidates.front();
   if (!candidates.empty()) throw several(recording, key, candidates);
   throw error(recording, "has no " + key + " images that can be recognised by name; " + kNameThem);
 }
 
-TopicPair choose_images(const Recording& recording, const ImageTopics& named) {
+TopicPair choose_images(const Reader& recording, const ImageTopics& named) {
   const auto color = image_candidates(recording, "color", named.color, is_color);
   const auto depth = image_candidates(recording, "depth", named.depth, is_depth);
   const std::vector<TopicPair> known = driver_pairs(color, depth);
@@ -108,7 +104,7 @@ std::string info_beside(const Topics& infos, std::string image) {
 }
 
 /// The one beside the image, else the only one.
-std::string choose_info(const Recording& recording, const std::string& color) {
+std::string choose_info(const Reader& recording, const std::string& color) {
   const Topics infos = fitting(recording, is_info);
   const std::string beside = info_beside(infos, color);
   return beside.empty() && infos.size() == 1 ? infos.front().name : beside;
@@ -116,15 +112,7 @@ std::string choose_info(const Recording& recording, const std::string& color) {
 
 }  // namespace
 
-std::string plain_type(std::string type) {
-  if (type.find("::dds_::") != std::string::npos && type.back() == '_') type.pop_back();
-  replace(type, "::dds_::", "::");
-  replace(type, "::", "/");
-  replace(type, "/msg/", "/");
-  return type;
-}
-
-RecordedMessage first_of(Recording& recording, const std::string& topic) {
+RecordedMessage first_of(Reader& recording, const std::string& topic) {
   std::optional<RecordedMessage> message = recording.first(topic);
   if (message) return std::move(*message);
   std::string cause = "none of its messages can be read";
@@ -132,7 +120,7 @@ RecordedMessage first_of(Recording& recording, const std::string& topic) {
   throw SourceError(recording.name() + ", topic " + topic + ": " + cause);
 }
 
-ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) {
+ImageTopics choose_topics(const Reader& recording, const ImageTopics& named) {
   ImageTopics topics;
   const TopicPair images = choose_images(recording, named);
   topics.color = images.color;
@@ -144,28 +132,12 @@ ImageTopics choose_topics(const Recording& recording, const ImageTopics& named) 
   return topics;
 }
 
-const RecordedTopic* topic_named(const Recording& recording, const std::string& name) {
-  const Topics& all = recording.topics();
-  const auto found = std::ranges::find_if(all, [&](const RecordedTopic& topic) { return topic.name == name; });
-  return found == all.end() ? nullptr : &*found;
-}
-
-std::vector<std::string> transform_topics(const Recording& recording) {
+std::vector<std::string> transform_topics(const Reader& recording) {
   std::vector<std::string> names;
   for (const RecordedTopic& topic : recording.topics()) {
-    if (topic.type == "tf/tfMessage" || topic.type == "tf2_msgs/TFMessage") names.push_back(topic.name);
+    if (is_tf(topic)) names.push_back(topic.name);
   }
   return names;
-}
-
-std::string list_topics(const Recording& recording) {
-  std::string text;
-  for (const RecordedTopic& topic : recording.topics()) {
-    text += "  " + topic.name + " (" + topic.type + ", " + std::to_string(topic.messages) + " messages)\n";
-  }
-  if (text.empty()) return "  none";
-  text.pop_back();
-  return text;
 }
 
 }  // namespace rtd::camera

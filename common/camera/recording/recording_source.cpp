@@ -7,14 +7,14 @@
 
 namespace rtd::camera {
 
-std::unique_ptr<FrameSource> open_recording(std::string uri, std::unique_ptr<Recording> recording,
+std::unique_ptr<FrameSource> open_recording(std::string uri, std::unique_ptr<recordings::Reader> recording,
                                             const RecordingOptions& options) {
   const bool named = !options.topics.color.empty() || !options.topics.depth.empty();
   if (!named && !own_frames_topic(*recording).empty()) return make_own_frames(std::move(uri), std::move(recording));
   return make_image_pairs(std::move(uri), std::move(recording), options);
 }
 
-RecordingSource::RecordingSource(std::string uri, std::unique_ptr<Recording> recording)
+RecordingSource::RecordingSource(std::string uri, std::unique_ptr<recordings::Reader> recording)
     : recording_(std::move(recording)) {
   info_.uri = std::move(uri);
 }

@@ -7,6 +7,7 @@
 
 #include "common/camera/frame_source.hpp"
 #include "common/geometry/trajectory.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/config.hpp"
@@ -28,6 +29,8 @@ int guarded(const char* command, std::ostream& err, const auto& work) {
   } catch (const service::ConfigError& error) {
     return refuse(error, service::kUsageOrConfig);
   } catch (const camera::SourceError& error) {
+    return refuse(error, service::kUsageOrConfig);
+  } catch (const mcap::RecordingFileError& error) {
     return refuse(error, service::kUsageOrConfig);
   } catch (const geometry::TrajectoryError& error) {
     return refuse(error, service::kUsageOrConfig);

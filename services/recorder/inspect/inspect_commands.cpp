@@ -4,27 +4,27 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
+#include <memory>
 #include <ostream>
 
-#include "common/camera/frame_source.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
+#include "common/recordings/reader.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
-#include "services/recorder/inspect/other_format_report.hpp"
 #include "services/recorder/inspect/recording_diff.hpp"
-#include "services/recorder/inspect/recording_report.hpp"
 
 namespace rtd::recordings {
 namespace {
 
-recordings::Opened open(const std::string& path, std::ostream& err) {
-  service::Progress progress(err, "opening " + path, recordings::size_of(path));
-  return recordings::open(path, [&](std::uint64_t bytes) { progress.reach(bytes); });
+Opened open_showing(const std::string& path, std::ostream& err) {
+  service::Progress progress(err, "opening " + path, size_of(path));
+  return open(path, [&](std::uint64_t bytes) { progress.reach(bytes); });
 }
 
-Contents read(const recordings::Opened& opened, const std::string& path, std::ostream& err) {
+Contents read(const Opened& opened, const std::string& path, std::ostream& err) {
   service::Progress progress(err, "reading " + path, opened.source->size());
   Contents contents = contents_of(*opened.source, [&](std::uint64_t bytes) { progress.reach(bytes); });
   for (const std::string& damage : opened.damages) {
@@ -47,7 +47,7 @@ void print(const Diff& diff, bool json, std::ostream& out) {
 }
 
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  const recordings::Opened a = open(request.a, err), b = open(request.b, err);
+  const Opened a = open_showing(request.a, err), b = open_showing(request.b, err);
   const Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
   const auto ignored = [&](const char* what) { return std::ranges::count(request.ignore, what) > 0; };
   RecordingDiff difference =
@@ -90,6 +90,42 @@ void add_damages(RecordingReport& report, const std::vector<std::string>& damage
   }
 }
 
+struct ReadChannel {
+  std::vector<mcap::Timestamp> times_ns;
+  std::uint64_t bytes = 0;
+};
+
+std::map<std::string, ReadChannel> read_messages(Reader& recording) {
+  std::map<std::string, ReadChannel> channels;
+  std::vector<std::string> names;
+  for (const RecordedTopic& topic : recording.topics()) {
+    channels.try_emplace(topic.name);
+    names.push_back(topic.name);
+  }
+  recording.play(names);
+  while (const std::optional<RecordedMessage> message = recording.next()) {
+    ReadChannel& channel = channels[message->topic];
+    channel.times_ns.push_back(static_cast<mcap::Timestamp>(std::max<std::int64_t>(0, message->recorded_ns)));
+    channel.bytes += message->bytes.size();
+  }
+  return channels;
+}
+
+void add_channel(RecordingReport& report, const std::string& topic, const std::string& type, const ReadChannel& read) {
+  ChannelReport channel;
+  channel.channel.topic = topic;
+  channel.type = type;
+  channel.timing = timing_of(read.times_ns);
+  channel.payload_bytes = read.bytes;
+  if (channel.timing.messages > 0) {
+    report.start_ns =
+        report.messages == 0 ? channel.timing.first_ns : std::min(report.start_ns, channel.timing.first_ns);
+    report.end_ns = std::max(report.end_ns, channel.timing.last_ns);
+  }
+  report.messages += channel.timing.messages;
+  report.channels.push_back(std::move(channel));
+}
+
 }  // namespace
 
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
@@ -126,7 +162,7 @@ CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   return service::report_errors<mcap::RecordingFileError, geometry::TrajectoryError>("rtd diff", err, [&] {
-    const bool a = recordings::is_recording(request.a), b = recordings::is_recording(request.b);
+    const bool a = is_recording(request.a), b = is_recording(request.b);
     if (!a) refuse_other_format(request.a);
     if (!b) refuse_other_format(request.b);
     if (a != b)
@@ -147,14 +183,30 @@ CLI::App* add_info_command(CLI::App& parent, InfoOptions& options) {
   return command;
 }
 
+std::optional<RecordingReport> report_on_other_format(const std::filesystem::path& file) {
+  const Form form = form_of(file);
+  if (form != Form::kBag && form != Form::kDb3) return std::nullopt;
+  const std::unique_ptr<Reader> recording = open_reader(file, form);
+  RecordingReport report;
+  report.format = form == Form::kBag ? "ROS 1 bag" : "rosbag2 sqlite3";
+  report.file_bytes = std::filesystem::file_size(file);
+  report.read_all = true;
+  const std::map<std::string, ReadChannel> channels = read_messages(*recording);
+  std::map<std::string, std::string> types;
+  for (const RecordedTopic& topic : recording->topics()) types[topic.name] = topic.type;
+  for (const auto& [topic, channel] : channels) add_channel(report, topic, types[topic], channel);
+  add_damages(report, recording->take_damages());
+  return report;
+}
+
 int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
-  return service::report_errors<mcap::RecordingFileError, camera::SourceError>("rtd info", err, [&] {
+  return service::report_errors<mcap::RecordingFileError>("rtd info", err, [&] {
     const auto print_report = [&](const RecordingReport& report) {
       out << (options.json ? service::json_text(to_json(report, options.file)) + '\n' : to_text(report, options.file));
       return report.damaged() ? service::kPartialLoss : service::kOk;
     };
     if (const auto other_format = report_on_other_format(options.file)) return print_report(*other_format);
-    const recordings::Opened opened = open(options.file, err);
+    const Opened opened = open_showing(options.file, err);
     const io::FileSource& source = *opened.source;
     service::Progress progress(err, "reading", source.size());
     ReportOptions how;
@@ -164,7 +216,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
     report.being_written = source.being_written();
     if (!opened.imported.empty()) {
       report.format = opened.imported;
-      report.file_bytes = recordings::size_of(options.file);
+      report.file_bytes = size_of(options.file);
     }
     add_damages(report, opened.damages);
     return print_report(report);

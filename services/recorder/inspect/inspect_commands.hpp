@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "services/recorder/inspect/recording_report.hpp"
 #include "services/recorder/inspect/trajectory_diff.hpp"
 
 namespace CLI {
@@ -39,6 +42,10 @@ struct InfoOptions {
 
 /// Adds the subcommand `info`; parsing fills `options`, which must outlive `parent`.
 CLI::App* add_info_command(CLI::App& parent, InfoOptions& options);
+
+/// The report on a ROS 1 bag or a rosbag2 database (sqlite3), which is read whole; empty for any other file. Throws
+/// mcap::RecordingFileError when it cannot be used at all.
+std::optional<RecordingReport> report_on_other_format(const std::filesystem::path& file);
 
 /// Writes the report to `out`, progress and errors to `err`. Returns the exit code: 0; 2 when there is no such file or
 /// it is not MCAP; 3 when it is damaged or truncated, after everything readable was reported.

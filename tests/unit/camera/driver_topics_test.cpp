@@ -19,12 +19,11 @@ using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
 /// A recording of which only the topics matter.
-class ImageTopicsOnly final : public Recording {
+class ImageTopicsOnly final : public recordings::Reader {
  public:
-  explicit ImageTopicsOnly(const std::vector<std::string>& images) : Recording("x.bag") {
+  explicit ImageTopicsOnly(const std::vector<std::string>& images) : Reader("x.bag") {
     for (const std::string& name : images) topics_.push_back({name, "sensor_msgs/Image", 1, {}});
   }
-  std::optional<RecordedMessage> first(const std::string&) override { return std::nullopt; }
   std::vector<std::int64_t> first_times_ns(const std::string&, std::size_t) override { return {}; }
   void play(const std::vector<std::string>&) override {}
   std::optional<RecordedMessage> next() override { return std::nullopt; }

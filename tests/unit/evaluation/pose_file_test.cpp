@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/frame_source.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -241,7 +241,7 @@ TEST_F(PoseFileTest, an_mcap_file_gives_poses_with_covariance) {
 }
 
 TEST_F(PoseFileTest, a_file_that_only_ends_as_a_recording_is_refused) {
-  EXPECT_THROW(read_pose_file(folder_.write("x.mcap", "no recording"), {}), camera::SourceError);
+  EXPECT_THROW(read_pose_file(folder_.write("x.mcap", "no recording"), {}), mcap::RecordingFileError);
 }
 
 }  // namespace

@@ -13,11 +13,10 @@
 namespace rtd::recordings {
 namespace {
 
-using recordings::open;
-using recordings::test::Folder;
-using recordings::test::messages_of;
-using recordings::test::Sample;
-using recordings::test::samples;
+using test::Folder;
+using test::messages_of;
+using test::Sample;
+using test::samples;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

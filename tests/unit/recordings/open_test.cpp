@@ -39,9 +39,6 @@ class OpenTest : public ::testing::Test {
     err_.str({});
     return run_info({.file = path}, out_, err_);
   }
-  static int run_info(const recordings::InfoOptions& options, std::ostream& out, std::ostream& err) {
-    return recordings::run_info(options, out, err);
-  }
 
   test::Folder folder_;
   std::ostringstream out_, err_;
@@ -196,12 +193,12 @@ TEST_F(OpenTest, info_and_diff_take_every_form) {
   EXPECT_EQ(info(folder_ / "bag"), 0) << err_.str();
   EXPECT_THAT(out_.str(),
               AllOf(HasSubstr("2 files copied into MCAP"), HasSubstr("/odom"), HasSubstr("my_msgs/msg/Odd")));
-  recordings::DiffRequest request;
+  DiffRequest request;
   request.a = folder_ / "bag";
   request.b = whole;
-  EXPECT_EQ(recordings::run_diff(request, out_, err_), 0) << out_.str() << err_.str();
+  EXPECT_EQ(run_diff(request, out_, err_), 0) << out_.str() << err_.str();
   request.b = folder_.db3("other.db3", samples(0, 7));
-  EXPECT_EQ(recordings::run_diff(request, out_, err_), 1);
+  EXPECT_EQ(run_diff(request, out_, err_), 1);
 }
 
 TEST_F(OpenTest, bare_paths_become_sources) {

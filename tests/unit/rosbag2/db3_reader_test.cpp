@@ -9,8 +9,8 @@
 #include <fstream>
 #include <random>
 
-#include "common/camera/recording/recording.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::rosbag2 {
 namespace {
@@ -154,8 +154,8 @@ TEST_F(Db3ReaderTest, survives_flipped_bytes) {
   EXPECT_GT(refused, 0);
 }
 
-TEST_F(Db3ReaderTest, camera_plays_the_messages_as_cdr) {
-  const auto recording = camera::open_db3(closed(std::string(kJazzy) + kMessages));
+TEST_F(Db3ReaderTest, messages_are_played_as_cdr) {
+  const auto recording = recordings::open_reader(closed(std::string(kJazzy) + kMessages));
   ASSERT_THAT(recording->topics(), SizeIs(2));
   EXPECT_EQ(recording->topics()[0].type, "std_msgs/A");
   recording->play({"/a"});

@@ -5,7 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "common/camera/recording/recording.hpp"
+#include "common/recordings/reader.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"
@@ -40,18 +40,18 @@ void fill(test::McapFile& file) {
   }
 }
 
-std::vector<std::string> names(const Recording& recording) {
+std::vector<std::string> names(const recordings::Reader& recording) {
   std::vector<std::string> names;
-  for (const RecordedTopic& topic : recording.topics()) names.push_back(topic.name);
+  for (const recordings::RecordedTopic& topic : recording.topics()) names.push_back(topic.name);
   return names;
 }
 
 /// Writes what the recording contains as rosbag2 does; returns the number of messages.
-int copy_to_db3(Recording& recording, const std::filesystem::path& path) {
+int copy_to_db3(recordings::Reader& recording, const std::filesystem::path& path) {
   sqlite3* database = nullptr;
   EXPECT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
   sqlite3_exec(database, kTables, nullptr, nullptr, nullptr);
-  for (const RecordedTopic& topic : recording.topics()) {
+  for (const recordings::RecordedTopic& topic : recording.topics()) {
     const std::string ros2_type = "sensor_msgs/msg/" + topic.type.substr(topic.type.find('/') + 1);
     const std::string sql = "INSERT INTO topics VALUES(NULL,'" + topic.name + "','" + ros2_type + "','cdr','');";
     EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
@@ -79,7 +79,7 @@ class Db3SourceTest : public ::testing::Test {
     fill(file_);
     mcap_uri_ = file_.uri();
     std::filesystem::remove(db3_);
-    const auto recording = open_mcap(mcap_uri_.substr(5));
+    const auto recording = recordings::open_reader(mcap_uri_.substr(5));
     copied_ = copy_to_db3(*recording, db3_);
   }
   ~Db3SourceTest() override { std::filesystem::remove(db3_); }
@@ -93,7 +93,7 @@ class Db3SourceTest : public ::testing::Test {
 
 TEST_F(Db3SourceTest, messages_are_those_of_the_mcap_file_byte_for_byte) {
   ASSERT_EQ(copied_, 6);
-  const auto mcap = open_mcap(mcap_uri_.substr(5)), db3 = open_db3(db3_);
+  const auto mcap = recordings::open_reader(mcap_uri_.substr(5)), db3 = recordings::open_reader(db3_);
   mcap->play(names(*mcap));
   db3->play(names(*db3));
   for (int i = 0; i < copied_; ++i) {

@@ -250,7 +250,7 @@ PoseFile read_text_file(const fs::path& file, const MissingStamps& stamps) {
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps) {
   const PoseArgument wanted = parse(argument);
   if (fs::exists(wanted.file) && is_recording(wanted.file)) {
-    RecordedPoses recorded = read_recorded_poses(*camera::open_any(wanted.file), wanted.choice);
+    RecordedPoses recorded = read_recorded_poses(*recordings::open_reader(wanted.file), wanted.choice);
     return {std::move(recorded.poses), false, std::move(recorded.damages)};
   }
   if (wanted.chosen && fs::exists(wanted.file))

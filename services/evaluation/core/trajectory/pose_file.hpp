@@ -24,7 +24,7 @@ struct PoseFile {
 
 /// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3),
 /// which it distinguishes by their content. `argument` is FILE, and for a recording FILE?topic=/x&child=FRAME. Throws
-/// geometry::TrajectoryError or camera::SourceError, which name the file, the line or topic and what is expected.
+/// geometry::TrajectoryError or mcap::RecordingFileError, which name the file, the line or topic and what is expected.
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps);
 
 }  // namespace rtd::eval

@@ -25,6 +25,8 @@ namespace {
 
 using geometry::StampedPose;
 using geometry::TrajectoryError;
+using recordings::RecordedMessage;
+using recordings::RecordedTopic;
 
 /// A pose of a message, and the frames that it is between.
 struct FramedPose {
@@ -32,34 +34,34 @@ struct FramedPose {
   std::string child;
   msg::Pose pose;
 };
-using Decode = std::vector<FramedPose> (*)(const camera::RecordedMessage&);
+using Decode = std::vector<FramedPose> (*)(const RecordedMessage&);
 
 msg::Pose pose_of(const msg::RosTransform& transform) {
   const auto& [x, y, z] = transform.translation;
   return {{x, y, z}, transform.rotation};
 }
 
-std::vector<FramedPose> from_pose(const camera::RecordedMessage& message) {
+std::vector<FramedPose> from_pose(const RecordedMessage& message) {
   const auto pose = ros::decode<msg::PoseStamped>(message.wire, message.bytes);
   return {{pose.header, {}, pose.pose}};
 }
 
-std::vector<FramedPose> from_covariance(const camera::RecordedMessage& message) {
+std::vector<FramedPose> from_covariance(const RecordedMessage& message) {
   const auto pose = ros::decode<msg::PoseWithCovarianceStamped>(message.wire, message.bytes);
   return {{pose.header, {}, pose.pose.pose}};
 }
 
-std::vector<FramedPose> from_odometry(const camera::RecordedMessage& message) {
+std::vector<FramedPose> from_odometry(const RecordedMessage& message) {
   const auto odometry = ros::decode<msg::Odometry>(message.wire, message.bytes);
   return {{odometry.header, odometry.child_frame_id, odometry.pose.pose}};
 }
 
-std::vector<FramedPose> from_transform(const camera::RecordedMessage& message) {
+std::vector<FramedPose> from_transform(const RecordedMessage& message) {
   const auto stamped = ros::decode<msg::TransformStamped>(message.wire, message.bytes);
   return {{stamped.header, stamped.child_frame_id, pose_of(stamped.transform)}};
 }
 
-std::vector<FramedPose> from_tf(const camera::RecordedMessage& message) {
+std::vector<FramedPose> from_tf(const RecordedMessage& message) {
   std::vector<FramedPose> poses;
   for (const auto& stamped : ros::decode<msg::TFMessage>(message.wire, message.bytes).transforms)
     poses.push_back({stamped.header, stamped.child_frame_id, pose_of(stamped.transform)});
@@ -72,10 +74,6 @@ const std::map<std::string, Decode>& pose_types() {
                                                        {"geometry_msgs/TransformStamped", from_transform},
                                                        {"nav_msgs/Odometry", from_odometry}};
   return kTypes;
-}
-
-bool is_tf(const camera::RecordedTopic& topic) {
-  return topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";
 }
 
 /// As they are named in a recording of ROS, or with the prefix of DDS.
@@ -91,10 +89,10 @@ std::string list_of(const std::vector<std::string>& names) {
 
 class PoseReader {
  public:
-  PoseReader(camera::Recording& recording, const PoseChoice& choice) : recording_(recording), choice_(choice) {}
+  PoseReader(recordings::Reader& recording, const PoseChoice& choice) : recording_(recording), choice_(choice) {}
 
   RecordedPoses run() {
-    const camera::RecordedTopic& topic = choose();
+    const RecordedTopic& topic = choose();
     const Decode decode = is_tf(topic) ? from_tf : pose_types().at(topic.type);
     std::map<std::string, std::vector<FramedPose>> by_child = read(topic.name, decode);
     const bool framed = is_tf(topic) || !choice_.child.empty();
@@ -110,10 +108,10 @@ class PoseReader {
  private:
   [[noreturn]] void fail(const std::string& cause) const { throw TrajectoryError(recording_.name() + ": " + cause); }
 
-  const camera::RecordedTopic& choose() const {
+  const RecordedTopic& choose() const {
     if (!choice_.topic.empty()) return named();
-    std::vector<const camera::RecordedTopic*> poses, transforms;
-    for (const camera::RecordedTopic& topic : recording_.topics()) {
+    std::vector<const RecordedTopic*> poses, transforms;
+    for (const RecordedTopic& topic : recording_.topics()) {
       if (topic.messages == 0 || topic.name.ends_with("/tf_static")) continue;
       if (pose_types().contains(topic.type)) poses.push_back(&topic);
       if (is_tf(topic)) transforms.push_back(&topic);
@@ -122,21 +120,21 @@ class PoseReader {
     if (found.size() == 1) return *found.front();
     if (found.empty())
       fail("has no poses (PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry, tf); its topics are:\n" +
-           camera::list_topics(recording_));
+           list_topics(recording_));
     std::vector<std::string> names;
     for (const auto* one : poses) names.push_back("FILE?topic=" + one->name + " (" + one->type + ")");
     for (const auto* one : transforms) names.push_back("FILE?topic=" + one->name + "&child=FRAME (" + one->type + ")");
     fail("has several topics of poses; name one:" + list_of(names));
   }
 
-  const camera::RecordedTopic& named() const {
-    for (const camera::RecordedTopic& topic : recording_.topics()) {
+  const RecordedTopic& named() const {
+    for (const RecordedTopic& topic : recording_.topics()) {
       if (!is_called(topic.name, choice_.topic)) continue;
       if (is_tf(topic) || pose_types().contains(topic.type)) return topic;
       fail("topic " + choice_.topic + " is of type " + topic.type +
            "; expected: PoseStamped, PoseWithCovarianceStamped, TransformStamped, Odometry or tf");
     }
-    fail("has no topic " + choice_.topic + "; its topics are:\n" + camera::list_topics(recording_));
+    fail("has no topic " + choice_.topic + "; its topics are:\n" + list_topics(recording_));
   }
 
   std::map<std::string, std::vector<FramedPose>> read(const std::string& topic, Decode decode) {
@@ -195,14 +193,14 @@ class PoseReader {
     result_.poses = std::move(poses);
   }
 
-  camera::Recording& recording_;
+  recordings::Reader& recording_;
   const PoseChoice& choice_;
   RecordedPoses result_;
 };
 
 }  // namespace
 
-RecordedPoses read_recorded_poses(camera::Recording& recording, const PoseChoice& choice) {
+RecordedPoses read_recorded_poses(recordings::Reader& recording, const PoseChoice& choice) {
   return PoseReader(recording, choice).run();
 }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/recording/recording.hpp"
 #include "common/geometry/trajectory.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::eval {
 
@@ -27,6 +27,6 @@ struct RecordedPoses {
 /// a choice it takes the only topic of poses; when there is none, the only child frame of tf. /tf_static is left out.
 /// Throws geometry::TrajectoryError: nothing fits, or several do (it lists them), a pose that is none, or a frame with
 /// several parents.
-RecordedPoses read_recorded_poses(camera::Recording& recording, const PoseChoice& choice);
+RecordedPoses read_recorded_poses(recordings::Reader& recording, const PoseChoice& choice);
 
 }  // namespace rtd::eval

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/inspect/other_format_report.hpp"
+#include "services/recorder/inspect/inspect_commands.hpp"
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
 
-#include "common/camera/frame_source.hpp"
+#include "common/mcap/recording_file.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 
 namespace rtd::recordings {
@@ -71,7 +71,7 @@ TEST(OtherFormatReport, is_for_files_of_other_programs_only) {
   const rtd::test::TemporaryFile text("a.txt", "hello"), broken("a.bag", "#ROSBAG V2.0\nxxx");
   EXPECT_FALSE(report_on_other_format(text.path()));
   EXPECT_FALSE(report_on_other_format("/nonexistent"));
-  EXPECT_THROW(report_on_other_format(broken.path()), camera::SourceError);
+  EXPECT_THROW(report_on_other_format(broken.path()), mcap::RecordingFileError);
 }
 
 }  // namespace

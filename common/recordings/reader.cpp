@@ -1,20 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/recording/recording.hpp"
+#include "common/recordings/reader.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
-#include "common/camera/frame_source.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
+#include "common/recordings/indexed_reader.hpp"
 #include "common/recordings/open.hpp"
 
-namespace rtd::camera {
+namespace rtd::recordings {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
   if (channel.message_encoding == "cdr") return ros::Wire::kCdr;
@@ -22,12 +19,12 @@ std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
   return std::nullopt;
 }
 
-class McapRecording final : public Recording {
+class McapReader final : public Reader {
  public:
-  McapRecording(const fs::path& file, recordings::Opened opened)
-      : Recording(file.string()), opened_(std::move(opened)), reader_(*opened_.source) {
+  explicit McapReader(const std::filesystem::path& path)
+      : Reader(path.string()), opened_(open(path.string())), reader_(*opened_.source) {
     const mcap::Summary& summary = reader_.summary();
-    if (summary.channels.empty()) throw SourceError(name_ + " has no messages" + first_problem());
+    if (summary.channels.empty()) throw mcap::RecordingFileError(name_ + " has no messages" + first_problem());
     const auto counts = message_counts();
     for (const auto& [id, channel] : summary.channels) {
       const auto schema = summary.schemas.find(channel.schema_id);
@@ -35,13 +32,6 @@ class McapRecording final : public Recording {
       add_topic({channel.topic, plain_type(schema->second.name), counts.count(id) != 0 ? counts.at(id) : 0,
                  channel.metadata, schema->second.encoding, schema->second.data});
     }
-  }
-
-  std::optional<RecordedMessage> first(const std::string& topic) override {
-    mcap::MessageCursor cursor = messages({topic});
-    const mcap::Message* message = cursor.next();
-    if (message == nullptr) return std::nullopt;
-    return to_message(cursor, *message);
   }
 
   std::vector<std::int64_t> first_times_ns(const std::string& topic, std::size_t most) override {
@@ -60,7 +50,12 @@ class McapRecording final : public Recording {
   std::optional<RecordedMessage> next() override {
     const mcap::Message* message = playing_ ? playing_->next() : nullptr;
     if (message == nullptr) return std::nullopt;
-    return to_message(*playing_, *message);
+    const mcap::Channel& channel = playing_->channel();
+    RecordedMessage recorded{channel.topic, static_cast<std::int64_t>(message->log_time), *wire_of(channel), {}};
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(message->data.data());
+    recorded.bytes.assign(bytes, bytes + message->data.size());
+    if (const RecordedTopic* topic = topic_named(*this, recorded.topic)) recorded.type = topic->type;
+    return recorded;
   }
 
   std::vector<std::string> take_damages() override {
@@ -74,15 +69,6 @@ class McapRecording final : public Recording {
   }
 
  private:
-  RecordedMessage to_message(const mcap::MessageCursor& cursor, const mcap::Message& message) const {
-    RecordedMessage recorded{
-        cursor.channel().topic, static_cast<std::int64_t>(message.log_time), *wire_of(cursor.channel()), {}};
-    const auto* bytes = reinterpret_cast<const std::uint8_t*>(message.data.data());
-    recorded.bytes.assign(bytes, bytes + message.data.size());
-    if (const RecordedTopic* topic = topic_named(*this, recorded.topic)) recorded.type = topic->type;
-    return recorded;
-  }
-
   mcap::MessageCursor messages(const std::vector<std::string>& topics) {
     mcap::MessageQuery query;
     query.wanted = [topics](const mcap::Channel& channel) {
@@ -114,20 +100,59 @@ class McapRecording final : public Recording {
     return problems.empty() ? std::string() : ": " + mcap::to_string(problems.front());
   }
 
-  recordings::Opened opened_;
+  Opened opened_;
   mcap::IndexedReader reader_;
   std::optional<mcap::MessageCursor> playing_;
   std::size_t reported_ = 0;
 };
 
-}  // namespace
-
-std::unique_ptr<Recording> open_mcap(const fs::path& file) {
-  try {
-    return std::make_unique<McapRecording>(file, recordings::open(file.string()));
-  } catch (const mcap::RecordingFileError& error) {
-    throw SourceError(error.what());
-  }
+void replace(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
+    text.replace(at, from.size(), to);
 }
 
-}  // namespace rtd::camera
+}  // namespace
+
+std::unique_ptr<Reader> open_reader(const std::filesystem::path& path, Form form) {
+  if (form == Form::kBag || form == Form::kDb3) return open_indexed(path, form);
+  return std::make_unique<McapReader>(path);
+}
+
+std::unique_ptr<Reader> open_reader(const std::filesystem::path& path) {
+  return open_reader(path, form_of(path));
+}
+
+std::optional<RecordedMessage> Reader::first(const std::string& topic) {
+  play({topic});
+  return next();
+}
+
+std::string plain_type(std::string type) {
+  if (type.find("::dds_::") != std::string::npos && type.back() == '_') type.pop_back();
+  replace(type, "::dds_::", "::");
+  replace(type, "::", "/");
+  replace(type, "/msg/", "/");
+  return type;
+}
+
+const RecordedTopic* topic_named(const Reader& recording, const std::string& name) {
+  const auto& all = recording.topics();
+  const auto found = std::ranges::find_if(all, [&](const RecordedTopic& topic) { return topic.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+bool is_tf(const RecordedTopic& topic) {
+  return topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage";
+}
+
+std::string list_topics(const Reader& recording) {
+  std::string text;
+  for (const RecordedTopic& topic : recording.topics()) {
+    text += "  " + topic.name + " (" + topic.type + ", " + std::to_string(topic.messages) + " messages)\n";
+  }
+  if (text.empty()) return "  none";
+  text.pop_back();
+  return text;
+}
+
+}  // namespace rtd::recordings
