@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <string>
 
 #include "common/camera/frame_source.hpp"
@@ -21,9 +20,6 @@ struct LiveOptions {
   std::string calibration_file;  ///< replaces the driver's calibration and depth unit
   bool registered = false;       ///< depth is registered to colour, whatever it looks like
   std::int64_t tolerance_ns = kPairingToleranceNs;
-  std::int64_t open_timeout_ns = 30'000'000'000;  ///< until the first frame
-  /// Receives what the source waits for, about once a second, and an empty text when frames arrive (again).
-  std::function<void(const std::string&)> on_wait = [](const std::string&) {};
 };
 
 /// Whether the URI is that of a running camera: ROS 2 topics or a device.

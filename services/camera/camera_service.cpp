@@ -10,13 +10,13 @@
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
+#include "common/camera/live_uri.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/live/live_source.hpp"
 #include "services/camera/live_camera.hpp"
 
 namespace rtd::camera {

@@ -9,11 +9,10 @@
 
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/core/live/device_source.hpp"
-#include "services/camera/core/live/live_source.hpp"
-#include "services/camera/core/oni/oni_file.hpp"
-#include "services/camera/devices/device_factory.hpp"
-#include "services/camera/realsense_device.hpp"
-#include "services/camera/ros2_feed.hpp"
+#include "services/camera/openni2/oni_file.hpp"
+#include "services/camera/openni2/openni2_device.hpp"
+#include "services/camera/realsense/realsense_device.hpp"
+#include "services/camera/ros2/ros2_feed.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -48,13 +47,14 @@ std::int64_t epoch_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(unix_time).count() - service::monotonic_ns();
 }
 
-/// Before OpenNI2's library reads a file.
-void check_recorded(const DeviceUri& uri) {
+/// A file is checked before OpenNI2's library reads it.
+std::unique_ptr<LiveDevice> make_checked_openni2_device(const DeviceUri& uri) {
   try {
     require_oni_file(uri.device);
   } catch (const OniFileError& error) {
     throw SourceError(error.what());
   }
+  return make_openni2_device(uri);
 }
 
 }  // namespace
@@ -62,19 +62,20 @@ void check_recorded(const DeviceUri& uri) {
 std::unique_ptr<FrameSource> make_live_source(const std::string& uri, const bus::BusOptions& bus,
                                               std::int64_t open_timeout_ns,
                                               std::function<void(const std::string&)> on_wait) {
+  DeviceOptions options{{}, open_timeout_ns, epoch_ns(), std::move(on_wait)};
+  std::unique_ptr<LiveDevice> device;
   if (is_device(uri)) {
-    DeviceOptions options{parse_device_uri(uri), open_timeout_ns, epoch_ns(), std::move(on_wait)};
-    if (options.uri.scheme == "openni2") check_recorded(options.uri);
-    const bool on_bus = options.uri.scheme == "realsense-dds";
-    std::unique_ptr<LiveDevice> device =
-        on_bus ? make_realsense_device(bus, options.uri.device) : make_device(options.uri);
-    return std::make_unique<DeviceSource>(std::move(device), std::make_unique<HostClock>(), std::move(options));
+    options.uri = parse_device_uri(uri);
+    device = options.uri.scheme == "openni2" ? make_checked_openni2_device(options.uri)
+                                             : make_realsense_device(bus, options.uri.device);
+  } else {
+    const LiveOptions ros2 = parse_live_options(uri);
+    options.uri.text = uri;
+    options.uri.calibration_file = ros2.calibration_file;
+    options.uri.tolerance_ns = ros2.tolerance_ns;
+    device = std::make_unique<Ros2Device>(uri, std::make_unique<Ros2Feed>(bus, ros2.topics), ros2);
   }
-  LiveOptions options = parse_live_options(uri);
-  options.open_timeout_ns = open_timeout_ns;
-  options.on_wait = std::move(on_wait);
-  auto feed = std::make_unique<Ros2Feed>(bus, options.topics);
-  return std::make_unique<LiveSource>(uri, std::move(feed), std::move(options));
+  return std::make_unique<DeviceSource>(std::move(device), std::make_unique<HostClock>(), std::move(options));
 }
 
 }  // namespace rtd::camera

@@ -17,7 +17,7 @@
 
 #include "common/bus/raw_bus.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/live/realsense_protocol.hpp"
+#include "services/camera/realsense/realsense_protocol.hpp"
 
 namespace rtd::camera::test {
 

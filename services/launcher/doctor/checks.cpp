@@ -181,8 +181,8 @@ void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings&
     }
   }
   if (cameras.empty()) {
-    findings.push_back({Verdict::kOk, "cameras: none is plugged in; this build supports " +
-                                          camera::supported_devices() + ", realsense-dds and ROS 2 topics"});
+    findings.push_back({Verdict::kOk, "cameras: none is plugged in; this build supports " + camera::openni2_support() +
+                                          ", realsense-dds and ROS 2 topics"});
   }
 }
 

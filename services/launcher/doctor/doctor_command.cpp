@@ -21,7 +21,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/camera/realsense_device.hpp"
+#include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 
@@ -161,7 +161,7 @@ void check_data(Findings& findings) {
 
 /// Those of this host, and those that announce themselves in the domain where that can be read.
 std::vector<camera::FoundCamera> all_cameras(const bus::BusOptions& bus) {
-  std::vector<camera::FoundCamera> cameras = camera::find_cameras();
+  std::vector<camera::FoundCamera> cameras = camera::find_openni2_cameras();
   try {
     for (camera::FoundCamera& found : camera::find_realsense_cameras(bus)) cameras.push_back(std::move(found));
   } catch (const bus::BusError&) {

@@ -9,7 +9,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/service/bus_config.hpp"
-#include "services/camera/devices/device_factory.hpp"
+#include "services/camera/openni2/openni2_device.hpp"
 
 namespace rtd::launcher {
 

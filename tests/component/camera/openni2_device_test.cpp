@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/devices/openni2_device.hpp"
+#include "services/camera/openni2/openni2_device.hpp"
 
 #include <gmock/gmock.h>
 
@@ -110,7 +110,7 @@ TEST_F(OpenNi2DeviceTest, opened_and_closed_often_it_leaks_no_descriptor) {
     const std::filesystem::directory_iterator all("/proc/self/fd");
     return std::distance(begin(all), end(all));
   };
-  const auto device = make_openni2_device(file_.string());
+  const auto device = make_openni2_device(parse_device_uri("openni2:" + file_.string()));
   const auto once = [&] {
     device->open();
     device->start({});

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/realsense_device.hpp"
+#include "services/camera/realsense/realsense_device.hpp"
 #include "tests/component/camera/camera_on_bus.hpp"
 #include "tests/support/realsense_double.hpp"
 

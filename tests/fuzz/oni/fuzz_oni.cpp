@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "services/camera/core/oni/oni_file.hpp"
+#include "services/camera/openni2/oni_file.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 #include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/support/oni_writer.hpp"

@@ -4,8 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
-#include "services/camera/core/live/live_source.hpp"
 #include "services/camera/core/live/pixel_format.hpp"
 #include "tests/unit/camera/played_device.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/oni/oni_file.hpp"
+#include "services/camera/openni2/oni_file.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

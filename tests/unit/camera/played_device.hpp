@@ -76,8 +76,8 @@ class PlayedDevice final : public LiveDevice {
     ++script_.opened;
     ++script_.open_now;
   }
-  std::vector<DeviceMode> modes() override { return {mode(Stream::kColor), mode(Stream::kDepth)}; }
-  DeviceSetup start(const ModeRequest& request) override {
+  std::vector<DeviceMode> modes() const { return {mode(Stream::kColor), mode(Stream::kDepth)}; }
+  std::optional<DeviceSetup> start(const ModeRequest& request) override {
     const DeviceMode color = choose_mode(modes(), Stream::kColor, request, name());
     DeviceSetup setup{color, mode(Stream::kDepth), 0.001, {}};
     const auto [width, height] = std::pair(script_.size_px.width, script_.size_px.height);
@@ -121,12 +121,12 @@ class PlayedDevice final : public LiveDevice {
     const auto pixels = static_cast<std::size_t>(script_.size_px.area());
     DeviceImage image{stream, next_ns_ - kPeriodNs + script_.clock_ns, {}};
     if (stream == Stream::kColor) {
-      image.bytes.assign(3 * pixels, script_.frozen ? 7 : static_cast<std::uint8_t>(frames_));
+      image.message.bytes.assign(3 * pixels, script_.frozen ? 7 : static_cast<std::uint8_t>(frames_));
     } else {
       image.stamp_ns += script_.depth_lag_ns;
       for (std::size_t i = 0; i < pixels; ++i) {
-        image.bytes.push_back(static_cast<std::uint8_t>(script_.depth_units & 0xFF));
-        image.bytes.push_back(static_cast<std::uint8_t>(script_.depth_units >> 8));
+        image.message.bytes.push_back(static_cast<std::uint8_t>(script_.depth_units & 0xFF));
+        image.message.bytes.push_back(static_cast<std::uint8_t>(script_.depth_units >> 8));
       }
     }
     return image;

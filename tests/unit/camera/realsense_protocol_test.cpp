@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/live/realsense_protocol.hpp"
+#include "services/camera/realsense/realsense_protocol.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "services/camera/core/live/live_source.hpp"
+#include "common/camera/live_uri.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 

@@ -16,8 +16,8 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"((?:common|services|tests)/[^"]+)"', r
 ACROSS_SERVICES = (
     ("services/evaluation/", "services/detector/core/"),  # runs the detector on images
     ("services/launcher/doctor/", "services/detector/core/"),  # tries the engines
-    ("services/launcher/doctor/", "services/camera/devices/"),  # looks for cameras
-    ("services/launcher/doctor/", "services/camera/realsense_device.hpp"),
+    ("services/launcher/doctor/", "services/camera/openni2/openni2_device.hpp"),  # looks for cameras
+    ("services/launcher/doctor/", "services/camera/realsense/realsense_device.hpp"),
     ("services/maps/", "services/slam/core/"),  # shows maps of slam and of dense
     ("services/maps/", "services/slam/map_file.hpp"),
     ("services/maps/", "services/dense/core/"),

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
+#include <string_view>
 #include <utility>
 
 #include "common/camera/calibration.hpp"
@@ -20,13 +22,67 @@ constexpr std::chrono::milliseconds kFirstBackOff{100}, kLongestBackOff{500};
 constexpr std::int64_t kSilentNs = 1'000'000'000;              // without an image of a stream
 constexpr std::int64_t kPatienceNs = 3'000'000'000;            // for the first images, and for a pair
 constexpr std::int64_t kDeviceReportPeriodNs = 1'000'000'000;  // while a fault lasts
-constexpr int kMaxWaiting = 64;                                // images in a device's queue
+
+constexpr std::int64_t kFaultNs = 1'000'000'000;       // what lasts as long is reported
+constexpr std::int64_t kRateWindowNs = 2'000'000'000;  // frames are counted over
+constexpr double kRateShare = 0.75;                    // of the nominal rate
 
 double seconds(std::int64_t time_ns) {
   return static_cast<double>(time_ns) * 1e-9;
 }
 
 }  // namespace
+
+void DeviceHealth::restart(std::int64_t now_ns, double fps) {
+  *this = {};
+  fps_ = fps;
+  started_ns_ = color_changed_ns_ = depth_seen_ns_ = now_ns;
+}
+
+void DeviceHealth::note_color(std::int64_t now_ns, const std::vector<std::uint8_t>& bytes) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::size_t hash = std::hash<std::string_view>{}(text);
+  if (color_hash_ && *color_hash_ == hash) return;
+  color_hash_ = hash;
+  color_changed_ns_ = now_ns;
+}
+
+void DeviceHealth::note_frame(std::int64_t now_ns, bool has_depth) {
+  if (has_depth) depth_seen_ns_ = now_ns;
+  frames_ns_.push_back(now_ns);
+  while (frames_ns_.front() <= now_ns - kRateWindowNs) frames_ns_.pop_front();
+}
+
+bool DeviceHealth::frozen(std::int64_t now_ns) const {
+  return color_hash_ && now_ns - color_changed_ns_ >= kFaultNs;
+}
+
+std::string DeviceHealth::fault(std::int64_t now_ns) const {
+  if (frozen(now_ns)) {
+    return fmt::format(
+        "the colour image has been the same to the bit for {:.1f} s, and its frames are left out: unplug the camera "
+        "and plug it in again",
+        static_cast<double>(now_ns - color_changed_ns_) * 1e-9);
+  }
+  if (now_ns - depth_seen_ns_ >= kFaultNs && !frames_ns_.empty()) {
+    return fmt::format(
+        "no pixel of the depth image has had a measurement for {:.1f} s: is the sensor covered, too close to "
+        "everything (0.4 m), in sunlight, or its projector off?",
+        static_cast<double>(now_ns - depth_seen_ns_) * 1e-9);
+  }
+  return lost_frames(now_ns);
+}
+
+std::string DeviceHealth::lost_frames(std::int64_t now_ns) const {
+  if (fps_ <= 0 || now_ns - started_ns_ < kRateWindowNs || frames_ns_.empty()) return {};
+  const double rate = static_cast<double>(frames_ns_.size()) / (static_cast<double>(kRateWindowNs) * 1e-9);
+  if (rate >= kRateShare * fps_) return {};
+  return fmt::format(
+      "only {:.1f} of {:g} frames/s arrive: use a USB 3 port of its own, a smaller mode (?width=&height=&fps=), or "
+      "more "
+      "light (automatic exposure lowers the rate)",
+      rate, fps_);
+}
 
 DeviceSource::DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<DeviceClock> clock,
                            DeviceOptions options)
@@ -46,18 +102,20 @@ bool DeviceSource::open() {
     first_ = step();
     if (first_) {
       opened_ = true;
+      if (run_by_others_) drop_waiting();
       return true;
     }
     if (ended_) throw SourceError(device_->name() + " ended before its first frame" + skips_.summary());
     if (clock_->now_ns() - begin_ns > options_.open_timeout_ns) {
-      throw SourceError(fmt::format("no frame within {:g} s: {}", seconds(options_.open_timeout_ns), cause()));
+      throw SourceError(fmt::format("no frame within {:g} s: {}", seconds(options_.open_timeout_ns),
+                                    run_by_others_ ? silence() : cause()));
     }
   }
   return false;
 }
 
 std::optional<SourceFrame> DeviceSource::next() {
-  if (std::exchange(opened_, false) && info_.live) drop_waiting();
+  if (std::exchange(opened_, false) && managed()) drop_waiting();
   while (!clock_->closed() && !ended_) {
     std::optional<SourceFrame> frame = first_ ? std::exchange(first_, std::nullopt) : step();
     if (!frame) continue;
@@ -74,7 +132,10 @@ std::optional<SourceFrame> DeviceSource::step() {
   }
   try {
     std::optional<SourceFrame> frame = read();
-    if (frame) back_off_ = kFirstBackOff;
+    if (frame) {
+      back_off_ = kFirstBackOff;
+      last_pair_ns_ = clock_->now_ns();
+    }
     restart_if_silent();
     const std::string fault = cause();
     if (frame || !fault.empty()) report(fault);
@@ -104,8 +165,10 @@ void DeviceSource::back_off() {
 
 void DeviceSource::start() {
   device_->open();
-  use(device_->start(options_.uri.mode));
-  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  const std::optional<DeviceSetup> setup = device_->start(options_.uri.mode);
+  run_by_others_ = !setup;
+  if (setup) use(*setup);
+  forget_pairs();
   timeline_.restart();
   color_ = depth_ = {};
   started_ns_ = last_pair_ns_ = clock_->now_ns();
@@ -132,39 +195,42 @@ void DeviceSource::use(const DeviceSetup& setup) {
 /// What would make every frame unusable is an error, not a skipped frame.
 void DeviceSource::calibrate(const DeviceSetup& setup) {
   const std::string name = device_->name();
-  if (options_.uri.calibration_file.empty()) {
-    if (!setup.camera) {
-      throw SourceError(name +
-                        " does not know its lens: write a file with 'key: value' lines (width height fx fy cx cy, "
-                        "k1 k2 p1 p2 k3, depth_factor) and give it with ?calibration=FILE");
-    }
-    info_.camera = *setup.camera;
-    info_.depth_scale_m = setup.depth_scale_m;
+  if (options_.uri.calibration_file.empty() && !setup.camera) {
+    throw SourceError(name +
+                      " does not know its lens: write a file with 'key: value' lines (width height fx fy cx cy, "
+                      "k1 k2 p1 p2 k3, depth_factor) and give it with ?calibration=FILE");
   }
+  adopt(setup);
   info_.fps = setup.color.fps;
   check_frame_size(setup.color.size_px.width, setup.color.size_px.height, name);
   const auto& camera = info_.camera.parameters();
   const cv::Size calibrated(camera.width, camera.height);
   const cv::Size depth_px = setup.depth_camera ? calibrated : setup.depth.size_px;
-  if (calibrated == setup.color.size_px && depth_px == calibrated) return register_depth(setup);
+  if (calibrated == setup.color.size_px && depth_px == calibrated) return;
   throw SourceError(
       fmt::format("{}: colour {}, depth {}, calibration {} px differ: choose one size with ?width=&height= "
                   "and give a calibration of that size",
                   name, size_text(setup.color.size_px), size_text(setup.depth.size_px), size_text(calibrated)));
 }
 
-void DeviceSource::register_depth(const DeviceSetup& setup) {
+void DeviceSource::adopt(const DeviceSetup& setup) {
+  if (options_.uri.calibration_file.empty()) {
+    info_.camera = *setup.camera;
+    info_.depth_scale_m = setup.depth_scale_m;
+  }
   if (!setup.depth_camera) return;
   const auto& [camera, T_color_depth] = *setup.depth_camera;
   registration_.emplace(info_.camera, camera, T_color_depth, info_.depth_scale_m);
 }
 
 std::optional<SourceFrame> DeviceSource::read() {
-  if (std::optional<DeviceImage> image = device_->read(kLookAtDevice)) take(std::move(*image));
-  while (const std::optional<FramePairer::Pair> pair = pairer_->next(skips_)) {
-    if (std::optional<SourceFrame> frame = make_frame(*pair)) return frame;
+  std::optional<FramePairer::Pair> pair = pairer_->next(skips_);
+  if (!pair) {
+    if (std::optional<DeviceImage> image = device_->read(kLookAtDevice)) take(std::move(*image));
+    for (SkippedInput& skipped : device_->take_skipped()) skips_.add(std::move(skipped));
+    pair = pairer_->next(skips_);
   }
-  return std::nullopt;
+  return pair ? make_frame(*pair) : std::nullopt;
 }
 
 void DeviceSource::take(DeviceImage image) {
@@ -172,14 +238,15 @@ void DeviceSource::take(DeviceImage image) {
   const std::int64_t now_ns = clock_->now_ns();
   Images& images = is_color ? color_ : depth_;
   images = {true, image.stamp_ns, now_ns};
-  if (is_color && info_.live) {
-    health_.note_color(now_ns, image.bytes);
+  RecordedMessage& message = image.message;
+  if (is_color && managed()) {
+    health_.note_color(now_ns, message.bytes);
     follow_clock(image.stamp_ns, now_ns);
   }
-  RecordedMessage message;
-  message.topic = fmt::format("{} of {}", to_string(image.stream), device_->name());
-  message.recorded_ns = now_ns;
-  message.bytes = std::move(image.bytes);
+  if (message.topic.empty()) {
+    message.topic = fmt::format("{} of {}", to_string(image.stream), device_->name());
+    message.recorded_ns = now_ns;
+  }
   StampedMessage stamped{image.stamp_ns, std::move(message)};
   is_color ? pairer_->add_color(std::move(stamped), skips_) : pairer_->add_depth(std::move(stamped));
 }
@@ -187,47 +254,61 @@ void DeviceSource::take(DeviceImage image) {
 void DeviceSource::follow_clock(std::int64_t stamp_ns, std::int64_t now_ns) {
   const std::int64_t jump_ns = timeline_.note(stamp_ns, now_ns);
   if (jump_ns == 0) return;
-  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  forget_pairs();
   report_now(fmt::format("the stamps of {} jumped by {:.3f} s: frames continue with the time of this host",
                          device_->name(), seconds(jump_ns)));
 }
 
+void DeviceSource::forget_pairs() {
+  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+}
+
+bool DeviceSource::settle(const FramePairer::Pair& first) {
+  const std::optional<DeviceSetup> setup = device_->setup_by(first, info_);
+  if (!setup) return false;
+  adopt(*setup);
+  setup_ = *setup;
+  return true;
+}
+
 std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pair) {
-  last_pair_ns_ = clock_->now_ns();
+  if (run_by_others_ && !known_ && !settle(pair)) return std::nullopt;
+  const std::int64_t now_ns = clock_->now_ns();
+  if (!run_by_others_) last_pair_ns_ = now_ns;  // it is not silent, whatever its images are
   const RecordedMessage& color_message = pair.color.message;
-  if (health_.frozen(last_pair_ns_)) {
+  if (health_.frozen(now_ns)) {
     skips_.add({SkipReason::kColorFrozen, name_of(color_message) + ": the same bytes as for the last second"});
     return std::nullopt;
   }
-  ImageRead color = decode_image(setup_.color, color_message.bytes, name_of(color_message));
+  ImageRead color = device_->decode(setup_.color, color_message);
   if (color.problem) {
     skips_.add(*color.problem);
     return std::nullopt;
   }
-  ImageRead depth = decode_image(setup_.depth, pair.depth.message.bytes, name_of(pair.depth.message));
+  ImageRead depth = device_->decode(setup_.depth, pair.depth.message);
   if (depth.problem) {
     skips_.add(*depth.problem);
     return std::nullopt;
   }
-  if (registration_) depth.image = (*registration_)(depth.image);
+  if (registration_ && depth.image.size() == registration_->depth_size()) depth.image = (*registration_)(depth.image);
   const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
   if (mismatch) {
     skips_.add(*mismatch);
     return std::nullopt;
   }
   const std::int64_t color_ns = pair.color.stamp_ns;
-  const std::int64_t stamp_ns = info_.live ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
+  const std::int64_t stamp_ns = managed() ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
   set_depth_stamp(frame, stamp_ns + pair.depth.stamp_ns - color_ns, info_);
-  health_.note_frame(last_pair_ns_, frame.has_depth);
+  if (managed()) health_.note_frame(now_ns, frame.has_depth);
   known_ = true;
   return frame;
 }
 
 void DeviceSource::restart_if_silent() {
-  if (!info_.live) return;
+  if (!managed()) return;
   const std::int64_t now_ns = clock_->now_ns();
-  const bool stopped = color_.any && depth_.any && (silent(color_) || silent(depth_));
+  const bool stopped = color_.any && depth_.any && (arrivals(color_).silent || arrivals(depth_).silent);
   if (!stopped && now_ns - last_pair_ns_ < kPatienceNs) return;
   throw DeviceError(DeviceProblem::kAbsent, silence() + "; it is started again");
 }
@@ -246,12 +327,11 @@ void DeviceSource::drop_waiting() {
   first_.reset();
   if (!running_) return;
   try {
-    for (int i = 0; i < kMaxWaiting && device_->read(std::chrono::milliseconds(0)); ++i) {
-    }
+    device_->drop_waiting();
   } catch (const DeviceError& error) {
     return lose(error);
   }
-  pairer_.emplace(FramePairer::Options{.tolerance_ns = options_.uri.tolerance_ns, .at_once = true});
+  if (managed()) forget_pairs();
   last_pair_ns_ = color_.arrived_ns = depth_.arrived_ns = clock_->now_ns();
   health_.restart(last_pair_ns_, setup_.color.fps);
 }
@@ -278,21 +358,23 @@ std::string DeviceSource::cause() const {
 }
 
 std::string DeviceSource::silence() const {
+  const Arrivals color = arrivals(color_), depth = arrivals(depth_);
+  if (std::string why = device_->why_no_frame(color, depth); !why.empty()) return why;
   const auto none_of = [this](Stream stream, const Images& images) {
     const std::int64_t since_ns = images.any ? images.arrived_ns : started_ns_;
     return fmt::format("no {} image from {} for {:.1f} s", to_string(stream), device_->name(),
                        seconds(clock_->now_ns() - since_ns));
   };
-  if (silent(color_)) return none_of(Stream::kColor, color_);
-  if (silent(depth_)) return none_of(Stream::kDepth, depth_);
+  if (color.silent) return none_of(Stream::kColor, color_);
+  if (depth.silent) return none_of(Stream::kDepth, depth_);
   return fmt::format(
       "no pair of colour and depth from {}: the newest stamps are {:.1f} ms apart, allowed are {:g} (?tolerance_ms=)",
-      device_->name(), seconds(std::abs(color_.stamp_ns - depth_.stamp_ns)) * 1e3,
+      device_->name(), seconds(std::abs(color.stamp_ns - depth.stamp_ns)) * 1e3,
       seconds(options_.uri.tolerance_ns) * 1e3);
 }
 
-bool DeviceSource::silent(const Images& images) const {
-  return !images.any || clock_->now_ns() - images.arrived_ns >= kSilentNs;
+Arrivals DeviceSource::arrivals(const Images& images) const {
+  return {!images.any || clock_->now_ns() - images.arrived_ns >= kSilentNs, images.stamp_ns};
 }
 
 }  // namespace rtd::camera

@@ -11,8 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/frame_source.hpp"
+#include "common/camera/recording/frame_pairer.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "common/geometry/camera_model.hpp"
-#include "services/camera/core/live/device_modes.hpp"
+#include "services/camera/core/live/pixel_format.hpp"
 
 namespace rtd::camera {
 
@@ -51,29 +54,63 @@ struct DeviceSetup {
   std::optional<DepthCamera> depth_camera;  ///< empty when depth is registered to colour
 };
 
-/// An image as the device gives it, not yet decoded (pixel_format.hpp).
+/// An image as the device gives it, not yet decoded.
 struct DeviceImage {
   Stream stream = Stream::kColor;
   std::int64_t stamp_ns = 0;  ///< the device's clock, one for both streams
-  std::vector<std::uint8_t> bytes;
+  RecordedMessage message;    ///< a device of this host gives the bytes alone, without topic and time
 };
 
-/// A camera on this host or its network: opened, started, read, and after an error closed and opened again. One thread
-/// uses it. Every function but close() throws DeviceError.
+/// What has come of a stream.
+struct Arrivals {
+  bool silent = true;
+  std::int64_t stamp_ns = 0;  ///< of the newest
+};
+
+/// A camera on this host or its network: opened, started, read, and after an error closed and opened again. Or one that
+/// another program runs (a ROS driver): it is read as it comes, with the stamps of that program, and never started
+/// again. One thread uses it. Functions throw DeviceError for what may pass, where nothing else is said.
 class LiveDevice {
  public:
   virtual ~LiveDevice() = default;
   /// "openni2:1d27/0609@1/5": for messages, known before it is opened.
   virtual std::string name() const = 0;
   virtual void open() = 0;
-  /// All modes that it has, readable or not; it is open.
-  virtual std::vector<DeviceMode> modes() = 0;
-  /// Starts both streams in the modes that fit best (choose_mode()); it is open.
-  virtual DeviceSetup start(const ModeRequest& request) = 0;
+  /// Starts both streams in the modes that fit best (choose_mode()); it is open. Empty: another program runs it, and
+  /// setup_by() gives its setup.
+  virtual std::optional<DeviceSetup> start(const ModeRequest& request) = 0;
+  /// The setup by a first pair of images and what is known from a calibration file; empty while something lacks.
+  virtual std::optional<DeviceSetup> setup_by(const FramePairer::Pair& /*first*/, const SourceInfo& /*known*/) {
+    return std::nullopt;
+  }
   /// The next image of either stream; empty when none came within the time. kAbsent when it was unplugged.
   virtual std::optional<DeviceImage> read(std::chrono::milliseconds timeout) = 0;
+  /// Drops the images that wait: they are old by now.
+  virtual void drop_waiting() {
+    for (int i = 0; i < kMostWaiting && read(std::chrono::milliseconds(0)); ++i) {
+    }
+  }
+  /// CV_8UC3 BGR or CV_16UC1, 0 = no measurement, or a problem. Throws SourceError for what no image will be better in.
+  virtual ImageRead decode(const DeviceMode& mode, const RecordedMessage& message) const {
+    return decode_image(mode, message.bytes, name_of(message));
+  }
+  /// What did not become an image since the last call.
+  virtual std::vector<SkippedInput> take_skipped() { return {}; }
+  /// Why no frame comes, by what has come of the streams; empty: there is nothing else to say.
+  virtual std::string why_no_frame(const Arrivals& /*color*/, const Arrivals& /*depth*/) const { return {}; }
   /// Stops the streams and frees everything; also before open() and twice.
   virtual void close() noexcept = 0;
+
+ private:
+  static constexpr int kMostWaiting = 64;
+};
+
+/// A camera that was looked for and found.
+struct FoundCamera {
+  std::string uri;   ///< for --source
+  std::string name;  ///< for people
+  std::vector<DeviceMode> modes;
+  std::string problem;  ///< why it cannot be used now; empty when it can
 };
 
 /// The time of a DeviceSource. now_ns() and wait() belong to one thread, close() and closed() are thread-safe.

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/realsense_device.hpp"
+#include "services/camera/realsense/realsense_device.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "common/ros_codec/wire.hpp"
 #include "common/service/log.hpp"
 #include "services/camera/core/live/pixel_format.hpp"
-#include "services/camera/realsense_bus.hpp"
+#include "services/camera/realsense/realsense_bus.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -56,8 +56,7 @@ class RealsenseDevice final : public LiveDevice {
 
   std::string name() const override { return "realsense-dds:" + serial_; }
   void open() override;
-  std::vector<DeviceMode> modes() override { return device().description.modes(); }
-  DeviceSetup start(const ModeRequest& asked) override;
+  std::optional<DeviceSetup> start(const ModeRequest& asked) override;
   std::optional<DeviceImage> read(milliseconds timeout) override;
   void close() noexcept override;
 
@@ -126,8 +125,8 @@ Devices::Device& RealsenseDevice::device() {
   return found->second;
 }
 
-DeviceSetup RealsenseDevice::start(const ModeRequest& asked) {
-  const std::vector<DeviceMode> all = modes();
+std::optional<DeviceSetup> RealsenseDevice::start(const ModeRequest& asked) {
+  const std::vector<DeviceMode> all = device().description.modes();
   const DeviceMode color = choose_mode(all, Stream::kColor, asked, name());
   DeviceMode depth;
   try {
@@ -235,7 +234,7 @@ std::optional<DeviceImage> RealsenseDevice::take(const Event& event) {
                                     "started again",
                                     name(), to_string(stream), size_px.width, size_px.height, mode.format));
     }
-    return DeviceImage{stream, msg::to_ns(image.header.stamp), packed_rows(image)};
+    return DeviceImage{stream, msg::to_ns(image.header.stamp), {.bytes = packed_rows(image)}};
   } catch (const ros::WireError& error) {
     SPDLOG_WARN("event=image_refused topic={} cause=\"{}\"", event.topic, error.what());
     return std::nullopt;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/oni/oni_file.hpp"
+#include "services/camera/openni2/oni_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@ namespace rtd::camera {
 namespace {
 
 constexpr std::uint64_t kFileHeaderBytes = 24, kRecordHeaderBytes = 28;
-constexpr std::uint32_t kRecordMagic = 0x0052494E;          // "NIR\0"
-constexpr std::uint32_t kMaxFieldBytes = 1600 * 1200 * 3;   // the player's buffer for a record
-constexpr std::uint32_t kMaxImageBytes = kMaxFieldBytes;    // and for an image
-constexpr std::uint32_t kImage = 10, kEnd = 11;             // types of records
+constexpr std::uint32_t kRecordMagic = 0x0052494E;         // "NIR\0"
+constexpr std::uint32_t kMaxFieldBytes = 1600 * 1200 * 3;  // the player's buffer for a record
+constexpr std::uint32_t kMaxImageBytes = kMaxFieldBytes;   // and for an image
+constexpr std::uint32_t kImage = 10, kEnd = 11;            // types of records
 
 struct RecordHeader {
   std::uint32_t magic = 0, type = 0, node = 0, field_bytes = 0, payload_bytes = 0;

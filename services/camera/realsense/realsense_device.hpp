@@ -8,7 +8,6 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "services/camera/core/live/live_device.hpp"
-#include "services/camera/devices/device_factory.hpp"
 
 namespace rtd::camera {
 

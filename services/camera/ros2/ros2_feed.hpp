@@ -11,7 +11,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/camera/core/live/live_source.hpp"
+#include "services/camera/ros2/ros2_device.hpp"
 
 namespace rtd::camera {
 
@@ -26,8 +26,6 @@ class Ros2Feed final : public LiveFeed {
   std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
   void clear() override;
   void end_transforms() override { wants_transforms_ = false; }
-  void close() override { queue_.close(); }
-  bool closed() const override { return queue_.closed(); }
   std::uint64_t dropped() const override { return queue_.dropped(); }
   std::int64_t now_ns() const override { return service::monotonic_ns(); }
   std::string state_of(const std::string& topic) const override;

@@ -13,7 +13,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/ros_codec/wire.hpp"
-#include "services/camera/core/live/realsense_protocol.hpp"
+#include "services/camera/realsense/realsense_protocol.hpp"
 
 /// What RealSense cameras on DDS announce and send. Everything here belongs to one thread.
 namespace rtd::camera::realsense {

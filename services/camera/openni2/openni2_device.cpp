@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/devices/openni2_device.hpp"
+#include "services/camera/openni2/openni2_device.hpp"
 
 #include <fmt/format.h>
 #include <openni2/OpenNI.h>
@@ -11,12 +11,13 @@
 #include <atomic>
 #include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
-
-#include "services/camera/devices/usb_access.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -25,6 +26,25 @@ constexpr float kImageByImage = -1;                      // speed of a file: eac
 constexpr std::chrono::milliseconds kDamagedAfter{500};  // a file without an image for so long gives none any more
 constexpr std::chrono::milliseconds kPlayerRests{50};    // before the streams of a file go
 constexpr double kMillimetreM = 0.001, kTenthOfMillimetreM = 0.0001;
+
+/// "1d27/0609@1/5" (vendor/product@bus/device, OpenNI2's name of a USB device) -> "/dev/bus/usb/001/005"; empty when
+/// the name is of another kind.
+std::optional<std::string> usb_node(const std::string& uri) {
+  unsigned vendor = 0, product = 0, bus = 0, device = 0;
+  int used = 0;
+  const int fields = std::sscanf(uri.c_str(), "%4x/%4x@%3u/%3u%n", &vendor, &product, &bus, &device, &used);
+  if (fields != 4 || static_cast<std::size_t>(used) != uri.size()) return std::nullopt;
+  return fmt::format("/dev/bus/usb/{:03}/{:03}", bus, device);
+}
+
+/// Cause and fix for a device file that exists but may not be opened.
+std::string no_permission(const std::string& device, const std::string& node) {
+  return fmt::format(
+      "{}: no permission to open {}: add the user to the group 'video' (sudo usermod -aG video $USER, then log in "
+      "again) and install the udev rule: sudo cp deploy/udev/60-rtd-cameras.rules /etc/udev/rules.d/ && sudo udevadm "
+      "control --reload && sudo udevadm trigger",
+      device, node);
+}
 
 /// A mode as OpenNI2 and as we name it.
 struct NamedMode {
@@ -146,8 +166,8 @@ class OpenNi2Device final : public LiveDevice {
 
   std::string name() const override { return "openni2:" + uri_; }
   void open() override;
-  std::vector<DeviceMode> modes() override;
-  DeviceSetup start(const ModeRequest& request) override;
+  std::vector<DeviceMode> modes();
+  std::optional<DeviceSetup> start(const ModeRequest& request) override;
   std::optional<DeviceImage> read(std::chrono::milliseconds timeout) override;
   void close() noexcept override;
 
@@ -214,7 +234,7 @@ NamedMode OpenNi2Device::choose(Stream stream, const ModeRequest& request) {
   });
 }
 
-DeviceSetup OpenNi2Device::start(const ModeRequest& request) {
+std::optional<DeviceSetup> OpenNi2Device::start(const ModeRequest& request) {
   const NamedMode color = choose(Stream::kColor, request);
   const NamedMode depth = choose(Stream::kDepth, {color.ours.size_px.width, color.ours.size_px.height, color.ours.fps});
   for (const auto& [stream, kind] : {std::pair(&color_, Stream::kColor), std::pair(&depth_, Stream::kDepth)}) {
@@ -234,7 +254,8 @@ DeviceSetup OpenNi2Device::start(const ModeRequest& request) {
   start(depth_, depth);
   const bool fine = depth.theirs.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM;
   silent_ = std::chrono::milliseconds(0);
-  return {color.ours, depth.ours, fine ? kTenthOfMillimetreM : kMillimetreM, lens_of(color_, color.ours.size_px)};
+  return DeviceSetup{color.ours, depth.ours, fine ? kTenthOfMillimetreM : kMillimetreM,
+                     lens_of(color_, color.ours.size_px)};
 }
 
 void OpenNi2Device::register_depth() {
@@ -287,7 +308,7 @@ std::optional<DeviceImage> OpenNi2Device::read(std::chrono::milliseconds timeout
 DeviceImage OpenNi2Device::to_image(const openni::VideoFrameRef& frame, Stream stream) const {
   DeviceImage image{stream, static_cast<std::int64_t>(frame.getTimestamp()) * 1000, {}};
   const auto* const data = static_cast<const std::uint8_t*>(frame.getData());
-  image.bytes.assign(data, data + frame.getDataSize());
+  image.message.bytes.assign(data, data + frame.getDataSize());
   return image;
 }
 
@@ -320,8 +341,8 @@ FoundCamera look_at(const openni::DeviceInfo& info) {
 
 }  // namespace
 
-std::unique_ptr<LiveDevice> make_openni2_device(const std::string& uri) {
-  return std::make_unique<OpenNi2Device>(uri);
+std::unique_ptr<LiveDevice> make_openni2_device(const DeviceUri& uri) {
+  return std::make_unique<OpenNi2Device>(uri.device);
 }
 
 std::vector<FoundCamera> find_openni2_cameras() {
@@ -335,6 +356,10 @@ std::vector<FoundCamera> find_openni2_cameras() {
   } catch (const DeviceError&) {
     return {};  // no driver, so no camera
   }
+}
+
+std::string openni2_support() {
+  return "openni2";
 }
 
 }  // namespace rtd::camera

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/ros2_feed.hpp"
+#include "services/camera/ros2/ros2_feed.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

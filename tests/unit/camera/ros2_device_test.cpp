@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/core/live/live_source.hpp"
+#include "services/camera/ros2/ros2_device.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,7 +9,9 @@
 #include <set>
 
 #include "common/camera/source_factory.hpp"
+#include "services/camera/core/live/device_source.hpp"
 #include "tests/unit/camera/image_bag.hpp"
+#include "tests/unit/camera/played_device.hpp"
 #include "tests/unit/camera/two_cameras.hpp"
 
 namespace rtd::camera {
@@ -24,46 +26,45 @@ using ::testing::ThrowsMessage;
 
 constexpr const char* kUri = "ros2:/c,/d,/i";
 
-/// A camera that a test plays. An empty feed lets its clock continue, and closes after a minute.
+/// A camera that a test plays. An empty feed lets its clock continue, and closes it after a minute.
+struct FeedScript {
+  std::deque<RecordedMessage> messages;
+  std::uint64_t dropped = 0;
+  std::set<std::string> published;
+  bool clears = false;  ///< as the real one; a test of one stream leaves it off
+  test::PlayedTime time{.now_ns = 0};
+};
+
 class PlayedFeed : public LiveFeed {
  public:
-  struct Script {
-    std::deque<RecordedMessage> messages;
-    std::uint64_t dropped = 0;
-    std::set<std::string> published;
-    bool clears = false;  ///< as the real one; a test of one stream leaves it off
-  };
-  explicit PlayedFeed(Script& script) : script_(script) {}
+  explicit PlayedFeed(FeedScript& script) : script_(script) {}
 
   std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override {
+    test::PlayedTime& time = script_.time;
     if (script_.messages.empty()) {
-      now_ns_ += std::chrono::nanoseconds(timeout).count();
-      closed_ = closed_ || now_ns_ > 60'000'000'000;
+      time.go_on(std::chrono::nanoseconds(timeout).count());
+      time.closed = time.closed || time.now_ns > 60'000'000'000;
       return std::nullopt;
     }
     RecordedMessage message = std::move(script_.messages.front());
     script_.messages.pop_front();
-    now_ns_ += 1'000'000;
-    message.recorded_ns = now_ns_;
+    time.go_on(1'000'000);
+    message.recorded_ns = time.now_ns;
     return message;
   }
   void clear() override {
     if (script_.clears) script_.messages.clear();
   }
-  void close() override { closed_ = true; }
-  bool closed() const override { return closed_; }
   std::uint64_t dropped() const override { return script_.dropped; }
-  std::int64_t now_ns() const override { return now_ns_; }
+  std::int64_t now_ns() const override { return script_.time.now_ns; }
   std::string state_of(const std::string& topic) const override { return "state of " + topic; }
   bool is_published(const std::string& topic) const override { return script_.published.contains(topic); }
 
  private:
-  Script& script_;
-  std::int64_t now_ns_ = 0;
-  bool closed_ = false;
+  FeedScript& script_;
 };
 
-class LiveSourceTest : public ::testing::Test {
+class Ros2DeviceTest : public ::testing::Test {
  protected:
   template <class Message>
   void add(const std::string& topic, const std::string& type, const Message& message) {
@@ -90,28 +91,34 @@ class LiveSourceTest : public ::testing::Test {
     info();
     both(1.0);
   }
-  LiveSource source(const std::string& uri = kUri) {
-    LiveOptions options = parse_live_options(uri);
+  DeviceSource source(const std::string& uri = kUri) {
+    script_.time = {.now_ns = 0};
+    const LiveOptions ros2 = parse_live_options(uri);
+    DeviceOptions options;
+    options.uri.text = uri;
+    options.uri.calibration_file = ros2.calibration_file;
+    options.uri.tolerance_ns = ros2.tolerance_ns;
     options.on_wait = [this](const std::string& what) { reported_.push_back(what); };
-    return {uri, std::make_unique<PlayedFeed>(script_), options};
+    return {std::make_unique<Ros2Device>(uri, std::make_unique<PlayedFeed>(script_), ros2),
+            std::make_unique<test::PlayedClock>(script_.time), options};
   }
   /// The frame made of one pair of images.
-  static SourceFrame only_frame(LiveSource& source) {
+  static SourceFrame only_frame(DeviceSource& source) {
     EXPECT_TRUE(source.open());
     return source.next().value();
   }
 
-  PlayedFeed::Script script_;
+  FeedScript script_;
   std::vector<std::string> reported_;
 };
 
-TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
+TEST_F(Ros2DeviceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
   begin();
   color(1.1);
   depth(1.105);
   depth(1.2);
   color(1.2);
-  LiveSource played = source();
+  DeviceSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(played.info().live);
   EXPECT_EQ(played.info().camera.parameters().fy, 31);
@@ -127,20 +134,20 @@ TEST_F(LiveSourceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_dr
   EXPECT_EQ(played.counters().skipped_total(), 0U);
 }
 
-TEST_F(LiveSourceTest, colour_without_depth_in_time_is_left_out) {
+TEST_F(Ros2DeviceTest, colour_without_depth_in_time_is_left_out) {
   begin();
   color(1.1);
   both(1.2);
   color(1.3);
   depth(1.35);
-  LiveSource played = source(std::string(kUri) + "?tolerance_ms=60");
+  DeviceSource played = source(std::string(kUri) + "?tolerance_ms=60");
   ASSERT_TRUE(played.open());
   EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000);
   EXPECT_EQ(played.next()->image.stamp_ns, 1'300'000'000) << "within 60 ms";
   EXPECT_EQ(played.counters().of(SkipReason::kNoDepthPartner), 1U);
 }
 
-TEST_F(LiveSourceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
+TEST_F(Ros2DeviceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
   const cv::Mat rgb(24, 32, CV_8UC3, cv::Scalar(1, 2, 3)), grey(24, 32, CV_8UC1, cv::Scalar(9));
   cv::Mat metres(24, 32, CV_32FC1, cv::Scalar(1.5F));
   metres.at<float>(0, 0) = std::numeric_limits<float>::quiet_NaN();
@@ -152,7 +159,7 @@ TEST_F(LiveSourceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
   depth(1.1, metres, "32FC1");
   color(1.2, grey, "mono8");
   depth(1.2, metres, "32FC1");
-  LiveSource played = source();
+  DeviceSource played = source();
   const SourceFrame first = only_frame(played), second = played.next().value();
   EXPECT_EQ(first.image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(3, 2, 1));
   EXPECT_EQ(second.image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(9, 9, 9));
@@ -161,7 +168,7 @@ TEST_F(LiveSourceTest, every_encoding_becomes_bgr_and_depth_of_16_bit) {
   EXPECT_EQ(first.image.depth.at<std::uint16_t>(0, 1), 0) << "infinity";
 }
 
-TEST_F(LiveSourceTest, rows_may_have_bytes_behind_their_pixels) {
+TEST_F(Ros2DeviceTest, rows_may_have_bytes_behind_their_pixels) {
   msg::Image padded = ImageBag::image(ImageBag::depth(), "16UC1", 1.1);
   msg::Image wide = padded;
   wide.step = padded.step + 6;
@@ -173,15 +180,15 @@ TEST_F(LiveSourceTest, rows_may_have_bytes_behind_their_pixels) {
   begin();
   color(1.1);
   add("/d", "sensor_msgs/Image", wide);
-  LiveSource played = source();
+  DeviceSource played = source();
   EXPECT_EQ(only_frame(played).image.depth.at<std::uint16_t>(23, 31), 1500);
 }
 
-TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
+TEST_F(Ros2DeviceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
   const auto refusal = [&](const auto& put, const char* text) {
     script_.messages.clear();
     put();
-    LiveSource played = source();
+    DeviceSource played = source();
     EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(HasSubstr(text)));
   };
   refusal(
@@ -225,8 +232,8 @@ TEST_F(LiveSourceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
       "big endian");
 }
 
-TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
-  LiveSource nothing = source();
+TEST_F(Ros2DeviceTest, reports_what_it_waits_for_and_gives_up) {
+  DeviceSource nothing = source();
   EXPECT_THAT([&] { nothing.open(); },
               ThrowsMessage<SourceError>(AllOf(HasSubstr("no frame within 30 s"), HasSubstr("colour image on /c"))));
   ASSERT_FALSE(reported_.empty());
@@ -234,50 +241,50 @@ TEST_F(LiveSourceTest, reports_what_it_waits_for_and_gives_up) {
 
   reported_.clear();
   for (int i = 0; i < 1500; ++i) both(1.0 + 0.033 * i);
-  LiveSource no_info = source();
+  DeviceSource no_info = source();
   EXPECT_THROW(no_info.open(), SourceError);
   EXPECT_THAT(reported_.front(), HasSubstr("no sensor_msgs/CameraInfo on /i: state of /i"));
 }
 
-TEST_F(LiveSourceTest, reports_stamps_that_do_not_pair) {
+TEST_F(Ros2DeviceTest, reports_stamps_that_do_not_pair) {
   info();
   for (int i = 0; i < 1500; ++i) {
     color(1.0 + 0.033 * i);
     depth(1001.0 + 0.033 * i);
   }
-  LiveSource played = source();
+  DeviceSource played = source();
   EXPECT_THROW(played.open(), SourceError);
   ASSERT_FALSE(reported_.empty());
   EXPECT_THAT(reported_.front(),
               AllOf(HasSubstr("no pair"), HasSubstr(" ms apart, allowed are 20"), HasSubstr("tolerance_ms")));
 }
 
-TEST_F(LiveSourceTest, reports_a_pause_and_its_end) {
+TEST_F(Ros2DeviceTest, reports_a_pause_and_its_end) {
   begin();
   both(1.1);
-  LiveSource played = source();
+  DeviceSource played = source();
   only_frame(played);
   EXPECT_EQ(played.next(), std::nullopt) << "the feed closes after a minute";
   ASSERT_FALSE(reported_.empty());
   EXPECT_THAT(reported_.front(), HasSubstr("no colour image on /c"));
 }
 
-TEST_F(LiveSourceTest, a_clock_that_steps_back_is_an_error_not_silence) {
+TEST_F(Ros2DeviceTest, a_clock_that_steps_back_is_an_error_not_silence) {
   info();
   both(100.0);
   both(100.1);
   for (int i = 0; i < 40; ++i) both(1.0 + 0.033 * i);
-  LiveSource played = source();
+  DeviceSource played = source();
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(HasSubstr("went back")));
 }
 
-TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
+TEST_F(Ros2DeviceTest, broken_messages_and_drops_are_counted) {
   begin();
   both(1.1);
   script_.messages.back().bytes.resize(30);
   both(1.2);
-  LiveSource played = source();
+  DeviceSource played = source();
   ASSERT_TRUE(played.open());
   script_.dropped = 2;
   EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000);
@@ -285,7 +292,7 @@ TEST_F(LiveSourceTest, broken_messages_and_drops_are_counted) {
   EXPECT_EQ(played.counters().of(SkipReason::kOverrun), 2U);
 }
 
-class UnregisteredDepth : public LiveSourceTest {
+class UnregisteredDepth : public Ros2DeviceTest {
  protected:
   static constexpr const char* kTopics = "ros2:/c,/d,/i?depth_info=/di";
   void pair(double stamp_s) {
@@ -307,7 +314,7 @@ TEST_F(UnregisteredDepth, is_registered_by_both_camera_infos_and_tf_whatever_com
     transforms(topic);
     pair(1.2);
     pair(1.3);
-    LiveSource played = source(kTopics);
+    DeviceSource played = source(kTopics);
     ASSERT_TRUE(played.open()) << topic;
     const SourceFrame frame = played.next().value();
     EXPECT_EQ(frame.image.stamp_ns, 1'300'000'000);
@@ -321,7 +328,7 @@ TEST_F(UnregisteredDepth, is_refused_with_the_reason) {
     info(TwoCameras::info(cameras_.color));
     for (int i = 0; i < 3; ++i) pair(1.0 + 0.1 * i);
     put();
-    LiveSource played = source(kTopics);
+    DeviceSource played = source(kTopics);
     EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(words));
   };
   refusal([] {}, AllOf(HasSubstr("80 x 60"), HasSubstr("CameraInfo of depth on /di (state of /di"),
@@ -346,10 +353,10 @@ TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on
   elsewhere.header.stamp = msg::to_time(1'100'000'000);
   add("/d", "sensor_msgs/Image", elsewhere);
   const auto messages = script_.messages;
-  LiveSource refused = source();
+  DeviceSource refused = source();
   EXPECT_THAT([&] { refused.open(); }, ThrowsMessage<SourceError>(HasSubstr("'elsewhere'")));
   script_.messages = messages;
-  LiveSource taken = source(std::string(kUri) + "?registered=1");
+  DeviceSource taken = source(std::string(kUri) + "?registered=1");
   EXPECT_EQ(only_frame(taken).image.depth.at<std::uint16_t>(3, 3), 1500);
 }
 
@@ -358,7 +365,7 @@ TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
   both(1.1);
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info(40));
   both(1.2);
-  LiveSource played = source(kTopics);
+  DeviceSource played = source(kTopics);
   only_frame(played);
   EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("fx 40"), HasSubstr("again"))));
 }
@@ -369,15 +376,15 @@ TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info());
   both(1.1);
   both(1.2);
-  LiveSource played = source(kTopics);
+  DeviceSource played = source(kTopics);
   EXPECT_EQ(only_frame(played).image.stamp_ns, 1'200'000'000);
 }
 
-TEST_F(LiveSourceTest, what_came_while_it_opened_is_old) {
+TEST_F(Ros2DeviceTest, what_came_while_it_opened_is_old) {
   script_.clears = true;
   begin();
   both(1.1);
-  LiveSource played = source();
+  DeviceSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(script_.messages.empty());
 }

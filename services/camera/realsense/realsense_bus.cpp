@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/camera/realsense_bus.hpp"
+#include "services/camera/realsense/realsense_bus.hpp"
 
 #include <algorithm>
 #include <utility>
