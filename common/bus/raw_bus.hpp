@@ -142,6 +142,7 @@ struct RawReaderOptions {
   /// Takes the samples of a TopicWriter::shared_memory from there instead of having them sent. Spares the writer a
   /// copy, but then the writer's own short history is all the time that there is.
   bool in_place = false;
+  bool operator==(const RawReaderOptions&) const = default;
 };
 
 struct RawWriterOptions {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <ostream>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
@@ -109,19 +109,15 @@ int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostrea
   Queue queue(kQueue, concurrency::Overflow::kDropOldest);
   bus::RawHandlers handlers;
   handlers.on_sample = [&queue](bus::RawSample sample) { queue.push(std::move(sample)); };
-  bus::TopicListener listener(session.bus(), std::move(handlers), true, kReaderDepth);
-  std::string refused;  // of the watcher's thread until watch(nullptr)
-  session.bus().watch([&](const bus::TopicWriter& writer, bus::WriterChange change) {
-    if (change != bus::WriterChange::kAppeared || writer.own || writer.topic != topic) return;
-    try {
-      listener.add(writer);
-    } catch (const bus::BusError& error) {
-      refused = error.what();
-    }
-  });
+  std::string refused;  // of the follower's thread until stop()
+  bus::TopicFollower follower(session.bus(),
+                              {.wants = [&](const bus::TopicWriter& writer) { return writer.topic == topic; },
+                               .handlers = [&](const bus::RawTopic&) { return handlers; },
+                               .on_refused = [&](const auto&, const bus::BusError& error) { refused = error.what(); },
+                               .reader = {.transient_local = true, .depth = kReaderDepth, .in_place = true}});
   Printer printer(request, out, err);
   print_until_end(request, session, topic, queue, printer);
-  session.bus().watch(nullptr);
+  follower.stop();
   if (queue.dropped() > 0) {
     err << fmt::format("rtd topics: {} messages left out because they arrived faster than they could be printed\n",
                        queue.dropped());

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <ostream>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
 #include "services/topics/core/topic_report.hpp"
@@ -23,18 +23,15 @@ constexpr double kUsualDurationS = 5;
 /// Subscribes to topics as their writers appear and measures each.
 class Meters {
  public:
-  Meters(TopicsSession& session, const std::vector<std::string>& wanted) : session_(session), wanted_(wanted) {
-    session_.bus().watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
-      if (change == bus::WriterChange::kAppeared && !writer.own && wants(writer.topic)) subscribe(writer);
-    });
-  }
-  ~Meters() { stop(); }
+  Meters(TopicsSession& session, const std::vector<std::string>& wanted)
+      : session_(session),
+        wanted_(wanted),
+        follower_(session.bus(), {.wants = [this](const bus::TopicWriter& writer) { return wants(writer.topic); },
+                                  .handlers = [this](const bus::RawTopic& topic) { return handlers(meters_[topic]); },
+                                  .run = bus::TopicFollower::under(mutex_),
+                                  .reader = {.transient_local = true, .depth = kReaderDepth, .in_place = true}}) {}
 
-  void stop() {
-    session_.bus().watch(nullptr);
-    const std::lock_guard lock(mutex_);
-    for (auto& [key, meter] : meters_) meter.listener.reset();
-  }
+  void stop() { follower_.stop(); }
   /// Every topic that was found, and each topic named by the user, has had `count` messages.
   bool all_reached(std::uint64_t count) {
     const std::lock_guard lock(mutex_);
@@ -67,39 +64,30 @@ class Meters {
   struct Meter {
     std::mutex mutex;
     RateMeter rate;
-    std::unique_ptr<bus::TopicListener> listener;
   };
 
   bool wants(const bus::RawTopic& topic) const {
     return wanted_.empty() ||
            std::ranges::any_of(wanted_, [&](const std::string& name) { return is_called(topic, name); });
   }
-  void subscribe(const bus::TopicWriter& writer) {
-    try {
-      const std::lock_guard lock(mutex_);
-      Meter& meter = meters_[writer.topic];
-      if (meter.listener == nullptr) {
-        bus::RawHandlers handlers;
-        handlers.on_sample = [&meter](const bus::RawSample& sample) {
-          const std::lock_guard meter_lock(meter.mutex);
-          meter.rate.add(sample.received_ns, sample.cdr().size());
-        };
-        handlers.on_lost = [&meter](const bus::RawLoss& loss) {
-          const std::lock_guard meter_lock(meter.mutex);
-          meter.rate.add_lost(loss.count);
-        };
-        meter.listener = std::make_unique<bus::TopicListener>(session_.bus(), std::move(handlers), true, kReaderDepth);
-      }
-      meter.listener->add(writer);
-    } catch (const bus::BusError&) {
-      // a second type on one name: its row stays empty
-    }
+  static bus::RawHandlers handlers(Meter& meter) {
+    bus::RawHandlers handlers;
+    handlers.on_sample = [&meter](const bus::RawSample& sample) {
+      const std::lock_guard meter_lock(meter.mutex);
+      meter.rate.add(sample.received_ns, sample.cdr().size());
+    };
+    handlers.on_lost = [&meter](const bus::RawLoss& loss) {
+      const std::lock_guard meter_lock(meter.mutex);
+      meter.rate.add_lost(loss.count);
+    };
+    return handlers;
   }
 
   TopicsSession& session_;
   const std::vector<std::string>& wanted_;
   std::mutex mutex_;
   std::map<bus::RawTopic, Meter, ByName> meters_;
+  bus::TopicFollower follower_;  ///< the row of a second type on one name stays empty
 };
 
 }  // namespace
