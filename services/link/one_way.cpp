@@ -3,9 +3,7 @@
 #include "services/link/one_way.hpp"
 
 #include <algorithm>
-#include <utility>
 
-#include "common/bus/backend.hpp"
 #include "common/service/log.hpp"
 
 namespace rtd::link {
@@ -32,29 +30,19 @@ const char* to_string(Direction direction) {
 }  // namespace
 
 OneWay::OneWay(bus::RawBus& from, bus::RawBus& to, const LinkRules& rules, Direction direction)
-    : from_(from), to_(to), rules_(rules), direction_(direction) {
-  from_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { on_writer(writer, change); });
-}
-
-OneWay::~OneWay() {
-  from_.watch(nullptr);
-  const std::lock_guard lock(mutex_);
-  for (auto& [topic, route] : routes_) route->listener.reset();  // before what its callbacks use
-}
-
-void OneWay::on_writer(const bus::TopicWriter& writer, bus::WriterChange change) {
-  if (writer.own || !rules_.allows(direction_, writer.topic.name)) return;
-  const std::lock_guard lock(mutex_);
-  if (change == bus::WriterChange::kGone) return remove(writer);
-  try {
-    add(writer);
-  } catch (const bus::BusError& error) {
-    if (refused_.insert(writer.topic.name).second) {
-      SPDLOG_WARN("event=topic_not_passed topic={} direction={} cause=\"{}\"", writer.topic.name, to_string(direction_),
-                  error.what());
-    }
-  }
-}
+    : from_(from),
+      to_(to),
+      rules_(rules),
+      direction_(direction),
+      follower_(from,
+                {.wants = [this](const auto& writer) { return rules_.allows(direction_, writer.topic.name); },
+                 .handlers = [this](const bus::RawTopic& topic) { return handlers(*routes_.at(topic.name)); },
+                 .on_writer = [this](const bus::TopicWriter& writer) { add(writer); },
+                 .on_gone = [this](const bus::RawTopic& topic) { remove(topic.name); },
+                 .on_refused = [this](const auto& writer, const auto& error) { refuse(writer.topic.name, error); },
+                 .run = bus::TopicFollower::under(mutex_),
+                 .on_demand = true,
+                 .reader = {.transient_local = true, .depth = kReadDepth}}) {}
 
 /// Under the lock.
 void OneWay::add(const bus::TopicWriter& source) {
@@ -63,39 +51,32 @@ void OneWay::add(const bus::TopicWriter& source) {
     route = std::make_unique<Route>();
     route->topic = source.topic.name;
   }
-  route->sources[source.id] = source;
   if (!route->writer) {
     route->writer = to_.writer(source.topic, {.qos = qos_of(source)});
     SPDLOG_INFO("event=topic_found topic={} direction={} type={}", source.topic.name, to_string(direction_),
                 source.topic.type);
   }
-  if (route->listener) {
-    route->listener->add(source);
-  } else if (always_read(*route)) {
-    open(*route);
-  }
+  if (always_read(*route)) follower_.read(route->topic, true);
 }
 
 /// Under the lock. The other side sees that the last writer has gone. Counters stay.
-void OneWay::remove(const bus::TopicWriter& source) {
-  const auto found = routes_.find(source.topic.name);
-  if (found == routes_.end() || found->second->sources.erase(source.id) == 0 || !found->second->sources.empty()) return;
-  found->second->listener.reset();
-  found->second->writer.reset();
-  SPDLOG_INFO("event=topic_gone topic={} direction={}", source.topic.name, to_string(direction_));
+void OneWay::remove(const std::string& topic) {
+  follower_.read(topic, false);
+  routes_.at(topic)->writer.reset();
+  SPDLOG_INFO("event=topic_gone topic={} direction={}", topic, to_string(direction_));
+}
+
+/// Under the lock.
+void OneWay::refuse(const std::string& topic, const bus::BusError& error) {
+  if (!refused_.insert(topic).second) return;
+  SPDLOG_WARN("event=topic_not_passed topic={} direction={} cause=\"{}\"", topic, to_string(direction_), error.what());
 }
 
 bool OneWay::always_read(const Route& route) const {
   if (rules_.is_heartbeat(route.topic)) return true;
-  return std::ranges::any_of(route.sources, [](const auto& source) {
+  return std::ranges::any_of(follower_.writers(route.topic), [](const auto& source) {
     return source.second.qos.durability != bus::RawQos::Durability::kVolatile;
   });
-}
-
-/// Under the lock.
-void OneWay::open(Route& route) {
-  route.listener = std::make_unique<bus::TopicListener>(from_, handlers(route), false, kReadDepth);
-  for (const auto& [id, source] : route.sources) route.listener->add(source);
 }
 
 bus::RawHandlers OneWay::handlers(Route& route) {
@@ -130,13 +111,7 @@ void OneWay::tick() {
   const std::lock_guard lock(mutex_);
   for (auto& [topic, route] : routes_) {
     if (!route->writer || always_read(*route)) continue;
-    const bool wanted = route->writer->matched() > 0;
-    if (wanted == (route->listener != nullptr)) continue;
-    if (wanted) {
-      open(*route);
-    } else {
-      route->listener.reset();
-    }
+    follower_.read(topic, route->writer->matched() > 0);
   }
 }
 
@@ -144,7 +119,7 @@ std::vector<Passed> OneWay::passed() const {
   const std::lock_guard lock(mutex_);
   std::vector<Passed> passed;
   for (const auto& [topic, route] : routes_) {
-    passed.push_back({topic, route->messages, route->bytes, route->lost, route->listener != nullptr});
+    passed.push_back({topic, route->messages, route->bytes, route->lost, follower_.reads(topic)});
   }
   return passed;
 }

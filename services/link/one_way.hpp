@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "services/link/core/link_rules.hpp"
 
 namespace rtd::link {
@@ -32,9 +32,6 @@ class OneWay {
  public:
   /// Begins at once; tick() keeps it going. Both connections outlive it, and `from` has no other watcher.
   OneWay(bus::RawBus& from, bus::RawBus& to, const LinkRules& rules, Direction direction);
-  ~OneWay();
-  OneWay(const OneWay&) = delete;
-  OneWay& operator=(const OneWay&) = delete;
 
   /// Opens and closes readers as the other side wants them. To be called often, by one thread.
   void tick();
@@ -44,18 +41,15 @@ class OneWay {
   /// One topic. The callbacks of its reader hold it, without a lock.
   struct Route {
     std::string topic;
-    std::map<bus::WriterId, bus::TopicWriter> sources;
-    std::unique_ptr<bus::RawWriter> writer;
-    std::unique_ptr<bus::TopicListener> listener;  ///< null while no one wants the topic
-    std::map<bus::WriterId, bool> by_others;       ///< used by the reader's thread
+    std::unique_ptr<bus::RawWriter> writer;   ///< null while the topic has none here
+    std::map<bus::WriterId, bool> by_others;  ///< used by the reader's thread
     std::atomic<std::uint64_t> messages{0}, bytes{0}, lost{0};
   };
 
-  void on_writer(const bus::TopicWriter& writer, bus::WriterChange change);
   void add(const bus::TopicWriter& source);
-  void remove(const bus::TopicWriter& source);
+  void remove(const std::string& topic);
+  void refuse(const std::string& topic, const bus::BusError& error);
   bool always_read(const Route& route) const;
-  void open(Route& route);
   bus::RawHandlers handlers(Route& route);
   void pass(Route& route, const bus::RawSample& sample);
   bool written_by_others(Route& route, const bus::WriterId& writer) const;
@@ -67,6 +61,7 @@ class OneWay {
   mutable std::mutex mutex_;
   std::map<std::string, std::unique_ptr<Route>> routes_;  ///< by topic
   std::set<std::string> refused_;                         ///< topics that could not be opened, for the log
+  bus::TopicFollower follower_;                           ///< last: its reader uses the routes
 };
 
 }  // namespace rtd::link
