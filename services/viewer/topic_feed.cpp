@@ -65,29 +65,23 @@ TopicFeed::TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Mailbox mailbox, std::v
       hub_(hub),
       mailbox_(std::move(mailbox)),
       patterns_(std::move(patterns)),
-      robots_changed_(std::move(robots_changed)) {
-  bus_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) {
-    mailbox_.order([this, writer, change] { on_writer(writer, change); });
-  });
-}
+      robots_changed_(std::move(robots_changed)),
+      follower_(bus, {.handlers = [this](const bus::RawTopic& topic) { return handlers(entries_.at(topic.name)); },
+                      .on_writer = [this](const bus::TopicWriter& writer) { add(writer); },
+                      .on_gone = [this](const bus::RawTopic& topic) { remove(topic.name); },
+                      .on_refused =
+                          [](const bus::TopicWriter& writer, const bus::BusError& error) {
+                            SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", writer.topic.name, error.what());
+                          },
+                      .run = [this](std::function<void()> change) { mailbox_.order(std::move(change)); },
+                      .on_demand = true,
+                      .reader = {.transient_local = true, .depth = kDepth}}) {}
 
 void TopicFeed::stop() {
   if (std::exchange(stopped_, true)) return;
-  bus_.watch(nullptr);
+  follower_.stop();
   schema_reader_.reset();
-  for (auto& [name, entry] : entries_) entry.listener.reset();
   published_.clear();
-}
-
-void TopicFeed::on_writer(const bus::TopicWriter& writer, bus::WriterChange change) {
-  if (stopped_ || writer.own) return;
-  if (writer.topic.name == ros2::kSchemasTopic && change == bus::WriterChange::kAppeared) learn_types(writer);
-  if (change == bus::WriterChange::kGone) {
-    remove(writer);
-  } else {
-    add(writer);
-  }
-  robots_changed_();
 }
 
 bool TopicFeed::allowed(const std::string& topic) const {
@@ -96,26 +90,19 @@ bool TopicFeed::allowed(const std::string& topic) const {
 }
 
 void TopicFeed::add(const bus::TopicWriter& writer) {
+  if (writer.topic.name == ros2::kSchemasTopic) learn_types(writer);
   Entry& entry = entries_[writer.topic.name];
-  if (entry.writers.empty()) entry.topic = writer.topic;
-  if (entry.topic.type != writer.topic.type) return;  // the first type counts
-  entry.writers.insert_or_assign(writer.id, writer);
+  entry.topic = writer.topic;
   if (entry.channel == 0 && allowed(entry.topic.name))
     entry.channel = hub_.add_channel(ros2::ros_topic(entry.topic.name), schema_of(entry.topic.type));
-  if (!entry.listener) return;
-  try {
-    entry.listener->add(writer);
-  } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", entry.topic.name, error.what());
-  }
+  robots_changed_();
 }
 
-void TopicFeed::remove(const bus::TopicWriter& writer) {
-  const auto known = entries_.find(writer.topic.name);
-  if (known == entries_.end() || known->second.writers.erase(writer.id) == 0 || !known->second.writers.empty()) return;
-  const std::uint32_t channel = known->second.channel;
-  entries_.erase(known);
-  if (channel != 0) hub_.remove_channel(channel);
+void TopicFeed::remove(const std::string& topic) {
+  const std::uint32_t channel = entries_.at(topic).channel;
+  if (channel != 0) hub_.remove_channel(channel);  // want() is called when it was wanted
+  entries_.erase(topic);
+  robots_changed_();
 }
 
 foxglove::Schema TopicFeed::schema_of(const std::string& dds_type) const {
@@ -156,18 +143,12 @@ void TopicFeed::learn(const bus::RawSample& sample) {
 }
 
 void TopicFeed::want(std::uint32_t channel, bool wanted) {
-  if (stopped_) return;
-  for (auto& [name, entry] : entries_) {
-    if (entry.channel != channel) continue;
-    if (wanted) {
-      listen(entry);
-    } else {
-      entry.listener.reset();
-    }
+  for (const auto& [name, entry] : entries_) {
+    if (entry.channel == channel) follower_.read(name, wanted);
   }
 }
 
-void TopicFeed::listen(Entry& entry) {
+bus::RawHandlers TopicFeed::handlers(const Entry& entry) {
   bus::RawHandlers handlers;
   handlers.on_sample = [this, channel = entry.channel](const bus::RawSample& sample) {
     mailbox_.deliver(
@@ -176,18 +157,7 @@ void TopicFeed::listen(Entry& entry) {
         },
         sample.cdr().size());
   };
-  try {
-    entry.listener = std::make_unique<bus::TopicListener>(bus_, std::move(handlers), false, kDepth);
-    for (const auto& [id, writer] : entry.writers) entry.listener->add(writer);
-  } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", entry.topic.name, error.what());
-  }
-}
-
-std::vector<std::string> TopicFeed::topics() const {
-  std::vector<std::string> names;
-  for (const auto& [name, entry] : entries_) names.push_back(name);
-  return names;
+  return handlers;
 }
 
 void TopicFeed::update_graph() {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "common/ros2/type_description.hpp"
 #include "services/viewer/core/foxglove_hub.hpp"
 #include "services/viewer/mailbox.hpp"
@@ -31,7 +31,7 @@ class TopicFeed {
   /// A channel got its first subscriber, or lost its last.
   void want(std::uint32_t channel, bool wanted);
   /// DDS names of topics that have writers.
-  std::vector<std::string> topics() const;
+  std::vector<std::string> topics() const { return follower_.topics(); }
   /// Reports to the hub who writes, reads and offers what now. Readers that come and go are seen only here.
   void update_graph();
   /// Publishes a client's message; returns why not, or "".
@@ -40,19 +40,16 @@ class TopicFeed {
  private:
   struct Entry {
     bus::RawTopic topic;
-    std::map<bus::WriterId, bus::TopicWriter> writers;
     std::uint32_t channel = 0;  ///< 0: not offered
-    std::unique_ptr<bus::TopicListener> listener;
   };
 
-  void on_writer(const bus::TopicWriter& writer, bus::WriterChange change);
   void add(const bus::TopicWriter& writer);
-  void remove(const bus::TopicWriter& writer);
+  void remove(const std::string& topic);
   bool allowed(const std::string& topic) const;
   foxglove::Schema schema_of(const std::string& dds_type) const;
   void learn_types(const bus::TopicWriter& writer);
   void learn(const bus::RawSample& sample);
-  void listen(Entry& entry);
+  bus::RawHandlers handlers(const Entry& entry);
 
   bus::RawBus& bus_;
   FoxgloveHub& hub_;
@@ -64,6 +61,7 @@ class TopicFeed {
   std::unique_ptr<bus::RawReader> schema_reader_;
   std::map<std::string, std::unique_ptr<bus::RawWriter>> published_;  ///< by topic, for clients
   bool stopped_ = false;
+  bus::TopicFollower follower_;
 };
 
 }  // namespace rtd::viewer
