@@ -42,44 +42,42 @@ WheelSample to_sample(const msg::Odometry& odometry) {
 MotionFeed::MotionFeed(const bus::BusOptions& options, const std::string& imu_topic, const std::string& wheel_topic)
     : imu_{.topic = imu_topic, .dds_type = msg::kImuDdsType},
       wheels_{.topic = wheel_topic, .dds_type = msg::kOdometryDdsType},
-      bus_(bus::connect_raw(options)) {
-  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { follow(writer, change); });
+      bus_(bus::connect_raw(options)),
+      follower_(*bus_, {.wants = [this](const bus::TopicWriter& writer) { return wants(writer); },
+                        .handlers = [this](const bus::RawTopic& topic) { return handlers(topic); },
+                        .on_read =
+                            [](const bus::TopicWriter& writer, const bus::RawReaderOptions& reader) {
+                              SPDLOG_INFO("event=motion_topic topic={} type={} reliable={}",
+                                          ros2::ros_topic(writer.topic.name), ros2::ros_type(writer.topic.type),
+                                          reader.reliable);
+                            },
+                        .on_refused =
+                            [](const bus::TopicWriter& writer, const bus::BusError& error) {
+                              SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"",
+                                          ros2::ros_topic(writer.topic.name), error.what());
+                            },
+                        .reader = {.transient_local = true, .depth = kReaderDepth}}) {}
+
+bool MotionFeed::wants(const bus::TopicWriter& writer) {
+  const bool imu = takes(imu_, writer), wheels = takes(wheels_, writer);
+  return imu || wheels;
 }
 
-MotionFeed::~MotionFeed() {
-  bus_->watch(nullptr);
-  imu_.listener.reset();
-  wheels_.listener.reset();
+template <class Sample>
+bool MotionFeed::takes(Subscription<Sample>& subscription, const bus::TopicWriter& writer) {
+  if (ros2::ros_topic(writer.topic.name) != subscription.topic) return false;
+  if (writer.topic.type == subscription.dds_type) return true;
+  const std::lock_guard lock(mutex_);
+  subscription.other_type = ros2::ros_type(writer.topic.type);
+  return false;
 }
 
-void MotionFeed::follow(const bus::TopicWriter& writer, bus::WriterChange change) {
-  if (change == bus::WriterChange::kGone) return;
-  const std::string topic = ros2::ros_topic(writer.topic.name);
-  if (topic == imu_.topic) subscribe<msg::Imu>(imu_, writer);
-  if (topic == wheels_.topic) subscribe<msg::Odometry>(wheels_, writer);
-}
-
-template <class Message, class Sample>
-void MotionFeed::subscribe(Subscription<Sample>& subscription, const bus::TopicWriter& writer) {
-  if (writer.topic.type != subscription.dds_type) {
-    const std::lock_guard lock(mutex_);
-    subscription.other_type = ros2::ros_type(writer.topic.type);
-    return;
-  }
-  try {
-    if (subscription.listener == nullptr) {
-      bus::RawHandlers handlers;
-      handlers.on_sample = [this, &subscription](const bus::RawSample& sample) {
-        receive<Message>(subscription, sample);
-      };
-      subscription.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kReaderDepth);
-    }
-    subscription.listener->add(writer);
-    SPDLOG_INFO("event=motion_topic topic={} type={} reliable={}", subscription.topic,
-                ros2::ros_type(subscription.dds_type), subscription.listener->reliable());
-  } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", subscription.topic, error.what());
-  }
+bus::RawHandlers MotionFeed::handlers(const bus::RawTopic& topic) {
+  bus::RawHandlers handlers;
+  handlers.on_sample = [this, is_imu = topic.type == imu_.dds_type](const bus::RawSample& sample) {
+    is_imu ? receive<msg::Imu>(imu_, sample) : receive<msg::Odometry>(wheels_, sample);
+  };
+  return handlers;
 }
 
 template <class Message, class Sample>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "common/msg/imu.hpp"
 #include "services/slam/core/inertial/preintegration.hpp"
 #include "services/slam/core/inertial/wheel_stream.hpp"
@@ -29,9 +29,6 @@ class MotionFeed {
  public:
   /// ROS names of the topics; empty: none. Throws BusError when the bus refuses.
   MotionFeed(const bus::BusOptions& options, const std::string& imu_topic, const std::string& wheel_topic);
-  ~MotionFeed();
-  MotionFeed(const MotionFeed&) = delete;
-  MotionFeed& operator=(const MotionFeed&) = delete;
 
   /// Waits until every topic that is published has a sample of this stamp or later, but no longer than `most`. Once it
   /// has waited in vain, it waits no more until samples come again.
@@ -52,7 +49,6 @@ class MotionFeed {
   struct Subscription {
     std::string topic;  ///< ROS name; empty: not read
     std::string dds_type;
-    std::unique_ptr<bus::TopicListener> listener;
     std::deque<Sample> waiting;
     std::int64_t newest_ns = 0;
     bool silent = false;  ///< waited for in vain
@@ -60,9 +56,11 @@ class MotionFeed {
     std::string other_type;  ///< of a writer that cannot be read
   };
 
-  void follow(const bus::TopicWriter& writer, bus::WriterChange change);
-  template <class Message, class Sample>
-  void subscribe(Subscription<Sample>& subscription, const bus::TopicWriter& writer);
+  bool wants(const bus::TopicWriter& writer);
+  /// Whether it is a writer of this topic and type. Notes another type.
+  template <class Sample>
+  bool takes(Subscription<Sample>& subscription, const bus::TopicWriter& writer);
+  bus::RawHandlers handlers(const bus::RawTopic& topic);
   template <class Message, class Sample>
   void receive(Subscription<Sample>& subscription, const bus::RawSample& sample);
 
@@ -71,6 +69,7 @@ class MotionFeed {
   Subscription<ImuSample> imu_;
   Subscription<WheelSample> wheels_;
   std::shared_ptr<bus::RawBus> bus_;
+  bus::TopicFollower follower_;
 };
 
 }  // namespace rtd::slam
