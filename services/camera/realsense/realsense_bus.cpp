@@ -39,23 +39,45 @@ void take_notification(Devices::Device& device, const Event& event) {
 }  // namespace
 
 Subscriptions::Subscriptions(const bus::BusOptions& options)
-    : queue_(kEvents, concurrency::Overflow::kDropOldest), bus_(connect_to_cameras(options)) {
-  bus_->watch([this](const bus::TopicWriter&, bus::WriterChange) { queue_.push(Event{}); });
+    : queue_(kEvents, concurrency::Overflow::kDropOldest),
+      bus_(connect_to_cameras(options)),
+      follower_(*bus_, {.handlers = [this](const bus::RawTopic& topic) { return handlers(topic.name); },
+                        .on_refused =
+                            [](const bus::TopicWriter& writer, const bus::BusError& error) {
+                              SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", writer.topic.name, error.what());
+                            },
+                        .run =
+                            [this](const std::function<void()>& change) {
+                              {
+                                const std::lock_guard lock(mutex_);
+                                change();
+                              }
+                              queue_.push(Event{});
+                            },
+                        .on_demand = true,
+                        .reader = {.transient_local = true, .depth = kStreamDepth}}) {}
+
+void Subscriptions::read(const std::string& topic, bool wanted) {
+  const std::lock_guard lock(mutex_);
+  follower_.read(topic, wanted);
 }
 
-Subscriptions::~Subscriptions() {
-  bus_->watch(nullptr);
-  subscriptions_.clear();
-}
-
-void Subscriptions::add(const std::string& topic) {
-  subscriptions_.try_emplace(topic);
-  follow_writers();
+bool Subscriptions::published(const std::string& topic) const {
+  const std::lock_guard lock(mutex_);
+  return !follower_.writers(topic).empty();
 }
 
 bool Subscriptions::writes(const std::string& topic, const bus::WriterId& writer) const {
-  const auto subscription = subscriptions_.find(topic);
-  return subscription != subscriptions_.end() && subscription->second.writers.contains(writer);
+  const std::lock_guard lock(mutex_);
+  return follower_.writers(topic).contains(writer);
+}
+
+bus::RawHandlers Subscriptions::handlers(const std::string& topic) {
+  bus::RawHandlers handlers;
+  handlers.on_sample = [this, topic](const bus::RawSample& sample) {
+    queue_.push(Event{topic, sample.writer, sample.bytes});
+  };
+  return handlers;
 }
 
 std::unique_ptr<bus::RawWriter> Subscriptions::writer(const bus::RawTopic& topic) {
@@ -66,39 +88,11 @@ std::unique_ptr<bus::RawWriter> Subscriptions::writer(const bus::RawTopic& topic
 
 std::optional<Event> Subscriptions::next(Clock::time_point until) {
   const auto left = std::chrono::duration_cast<milliseconds>(until - Clock::now());
-  std::optional<Event> event = queue_.pop_for(std::max(left, milliseconds(0)));
-  if (event && !event->bytes) follow_writers();
-  return event;
-}
-
-void Subscriptions::follow_writers() {
-  std::map<std::string, std::set<bus::WriterId>> there;
-  for (const bus::TopicWriter& writer : bus_->writers()) {
-    const auto subscription = subscriptions_.find(writer.topic.name);
-    if (subscription == subscriptions_.end() || writer.own) continue;
-    there[subscription->first].insert(writer.id);
-    if (!subscription->second.writers.contains(writer.id)) listen(subscription->first, subscription->second, writer);
-  }
-  for (auto& [topic, subscription] : subscriptions_) subscription.writers = there[topic];
-}
-
-void Subscriptions::listen(const std::string& topic, Subscription& subscription, const bus::TopicWriter& writer) {
-  try {
-    if (!subscription.listener) {
-      bus::RawHandlers handlers;
-      handlers.on_sample = [this, topic](const bus::RawSample& sample) {
-        queue_.push(Event{topic, sample.writer, sample.bytes});
-      };
-      subscription.listener = std::make_unique<bus::TopicListener>(*bus_, std::move(handlers), false, kStreamDepth);
-    }
-    subscription.listener->add(writer);
-  } catch (const bus::BusError& error) {
-    SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
-  }
+  return queue_.pop_for(std::max(left, milliseconds(0)));
 }
 
 Devices::Devices(const bus::BusOptions& options) : subscriptions_(options) {
-  subscriptions_.add(kDeviceInfoTopic);
+  subscriptions_.read(kDeviceInfoTopic, true);
 }
 
 std::optional<Event> Devices::next(Clock::time_point until) {
@@ -138,13 +132,13 @@ void Devices::take_info(const Event& event) {
   Device& device = devices_[info->topic_root];
   device.info = *info;
   device.announcer = event.writer;
-  subscriptions_.add(notifications_of(info->topic_root));
+  subscriptions_.read(notifications_of(info->topic_root), true);
 }
 
 void Devices::forget(const bus::WriterId& announcer) {
   std::erase_if(devices_, [&](const auto& item) {
     if (item.second.announcer != announcer) return false;
-    subscriptions_.remove(notifications_of(item.first));
+    subscriptions_.read(notifications_of(item.first), false);
     return true;
   });
 }

@@ -5,12 +5,13 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/topic_follower.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/realsense/realsense_protocol.hpp"
@@ -33,30 +34,22 @@ class Subscriptions {
 
   /// Joins the domain. Throws BusError, also in a build without Fast DDS.
   explicit Subscriptions(const bus::BusOptions& options);
-  ~Subscriptions();
-  Subscriptions(const Subscriptions&) = delete;
-  Subscriptions& operator=(const Subscriptions&) = delete;
 
-  void add(const std::string& topic);
-  void remove(const std::string& topic) { subscriptions_.erase(topic); }
-  bool published(const std::string& topic) const { return !subscriptions_.at(topic).writers.empty(); }
+  /// From now on, or no longer.
+  void read(const std::string& topic, bool wanted);
+  bool published(const std::string& topic) const;
   bool writes(const std::string& topic, const bus::WriterId& writer) const;
   std::unique_ptr<bus::RawWriter> writer(const bus::RawTopic& topic);
   /// The next event; empty when none came in time.
   std::optional<Event> next(Clock::time_point until);
 
  private:
-  struct Subscription {
-    std::set<bus::WriterId> writers;
-    std::unique_ptr<bus::TopicListener> listener;
-  };
-
-  void follow_writers();
-  void listen(const std::string& topic, Subscription& subscription, const bus::TopicWriter& writer);
+  bus::RawHandlers handlers(const std::string& topic);
 
   concurrency::BoundedQueue<Event> queue_;
   std::shared_ptr<bus::RawBus> bus_;
-  std::map<std::string, Subscription> subscriptions_;
+  mutable std::mutex mutex_;
+  bus::TopicFollower follower_;  ///< under the lock
 };
 
 /// The devices that announce themselves, each with its description as far as it has come.

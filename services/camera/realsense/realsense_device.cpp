@@ -138,8 +138,8 @@ std::optional<DeviceSetup> RealsenseDevice::start(const ModeRequest& asked) {
   coming_.clear();
   color_topic_ = stream_topic(device().info, device().description.color().name);
   depth_topic_ = stream_topic(device().info, device().description.depth().name);
-  devices_.subscriptions().add(color_topic_);
-  devices_.subscriptions().add(depth_topic_);
+  devices_.subscriptions().read(color_topic_, true);
+  devices_.subscriptions().read(depth_topic_, true);
   DeviceSetup setup;
   setup.color = first_image(Stream::kColor, color);
   setup.depth = first_image(Stream::kDepth, depth);
@@ -242,8 +242,8 @@ std::optional<DeviceImage> RealsenseDevice::take(const Event& event) {
 }
 
 void RealsenseDevice::close() noexcept {
-  devices_.subscriptions().remove(color_topic_);
-  devices_.subscriptions().remove(depth_topic_);
+  devices_.subscriptions().read(color_topic_, false);
+  devices_.subscriptions().read(depth_topic_, false);
 }
 
 }  // namespace

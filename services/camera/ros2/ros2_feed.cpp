@@ -5,9 +5,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <utility>
-
 #include "common/bus/topics.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/log.hpp"
@@ -27,8 +24,8 @@ bool is_ours(const std::string& dds_topic) {
   return dds_topic == bus::topics::kColorJpeg.name || dds_topic == bus::topics::kDynamicMask.name;
 }
 
-std::string plain_dds_type(const bus::TopicWriter& writer) {
-  return plain_type(ros2::ros_type(writer.topic.type));
+std::string plain_dds_type(const bus::RawTopic& topic) {
+  return plain_type(ros2::ros_type(topic.type));
 }
 
 }  // namespace
@@ -37,71 +34,50 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
     : domain_(options.domain),
       loopback_only_(options.network.loopback_only),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
-      bus_(bus::connect_raw(options)) {
-  const std::pair<std::string, std::set<std::string>> read[] = {
-      {topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
-      {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}};
-  for (const auto& [topic, types] : read) {
-    const bool doubled = std::ranges::any_of(
-        subscriptions_, [&](const Subscription& subscription) { return subscription.topic == topic; });
-    if (!doubled) subscriptions_.push_back({topic, types, nullptr});
-  }
-  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { follow(writer, change); });
-}
-
-Ros2Feed::~Ros2Feed() {
-  bus_->watch(nullptr);
-  for (Subscription& subscription : subscriptions_) subscription.listener.reset();
-}
+      bus_(bus::connect_raw(options)),
+      types_{{topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
+             {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}},
+      follower_(*bus_, {.wants = [this](const bus::TopicWriter& writer) { return can_read(writer); },
+                        .handlers = [this](const bus::RawTopic& topic) { return handlers(topic); },
+                        .on_read =
+                            [](const bus::TopicWriter& writer, const bus::RawReaderOptions& reader) {
+                              SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}",
+                                          ros2::ros_topic(writer.topic.name), plain_dds_type(writer.topic),
+                                          reader.reliable, reader.transient_local);
+                            },
+                        .on_refused =
+                            [](const bus::TopicWriter& writer, const bus::BusError& error) {
+                              SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"",
+                                          ros2::ros_topic(writer.topic.name), error.what());
+                            },
+                        .reader = {.transient_local = true, .depth = kReaderDepth}}) {}
 
 void Ros2Feed::clear() {
   while (queue_.pop_for(std::chrono::milliseconds(0))) {
   }
 }
 
-void Ros2Feed::follow(const bus::TopicWriter& writer, bus::WriterChange change) {
-  if (change == bus::WriterChange::kGone) return;
-  const std::string topic = ros2::ros_topic(writer.topic.name);
-  for (Subscription& subscription : subscriptions_) {
-    if (subscription.topic != topic || !subscription.types.contains(plain_dds_type(writer))) continue;
-    try {
-      subscribe(subscription, writer);
-    } catch (const bus::BusError& error) {
-      SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"", topic, error.what());
-    }
-  }
+bool Ros2Feed::can_read(const bus::TopicWriter& writer) const {
+  const auto read = types_.find(ros2::ros_topic(writer.topic.name));
+  return read != types_.end() && read->second.contains(plain_dds_type(writer.topic));
 }
 
-void Ros2Feed::subscribe(Subscription& subscription, const bus::TopicWriter& writer) {
-  if (subscription.listener == nullptr) {
-    subscription.listener =
-        std::make_unique<bus::TopicListener>(*bus_, handlers(subscription, writer), false, kReaderDepth);
-  }
-  subscription.listener->add(writer);
-  SPDLOG_INFO("event=camera_topic topic={} type={} reliable={} latched={}", subscription.topic, plain_dds_type(writer),
-              subscription.listener->reliable(), subscription.listener->latched());
-}
-
-bus::RawHandlers Ros2Feed::handlers(const Subscription& subscription, const bus::TopicWriter& writer) {
+bus::RawHandlers Ros2Feed::handlers(const bus::RawTopic& topic) {
   bus::RawHandlers handlers;
-  const bool is_transform = subscription.types.contains(kTransform);
-  handlers.on_sample = [=, this, topic = subscription.topic,
-                        type = plain_dds_type(writer)](const bus::RawSample& sample) {
-    if (is_transform && !wants_transforms_) return;
+  handlers.on_sample = [this, name = ros2::ros_topic(topic.name),
+                        type = plain_dds_type(topic)](const bus::RawSample& sample) {
+    if (type == kTransform && !wants_transforms_) return;
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
-    RecordedMessage message{topic, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type};
-    queue_.push(std::move(message));
+    queue_.push({name, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type});
   };
   return handlers;
 }
 
 Ros2Feed::Publishers Ros2Feed::publishers(const std::string& topic) const {
   Publishers found;
-  const auto subscription =
-      std::ranges::find_if(subscriptions_, [&](const Subscription& one) { return one.topic == topic; });
   for (const bus::TopicWriter& writer : bus_->writers()) {
     if (ros2::ros_topic(writer.topic.name) != topic) continue;
-    if (subscription != subscriptions_.end() && subscription->types.contains(plain_dds_type(writer))) {
+    if (can_read(writer)) {
       ++found.readable;
     } else {
       found.other_type = ros2::ros_type(writer.topic.type);
@@ -121,7 +97,7 @@ std::string Ros2Feed::state_of(const std::string& topic) const {
 std::string Ros2Feed::without_publisher() const {
   std::set<std::string> images;
   for (const bus::TopicWriter& writer : bus_->writers()) {
-    const std::string type = plain_dds_type(writer);
+    const std::string type = plain_dds_type(writer.topic);
     if (is_ours(writer.topic.name)) continue;
     if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
   }
