@@ -13,12 +13,12 @@
 #include "common/io/text.hpp"
 #include "common/msg/point_cloud.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/occupancy/octomap_file.hpp"
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_file.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/dense/octomap_file.hpp"
 
 namespace rtd::dense {
 namespace {

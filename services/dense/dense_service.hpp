@@ -10,6 +10,7 @@
 
 #include "common/bus/frame_topics.hpp"
 #include "common/msg/ros.hpp"
+#include "common/occupancy/navigation_grid.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
@@ -17,7 +18,6 @@
 #include "services/dense/core/background.hpp"
 #include "services/dense/core/dense_config.hpp"
 #include "services/dense/core/depth_view.hpp"
-#include "services/dense/core/navigation_grid.hpp"
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"

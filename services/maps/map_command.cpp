@@ -12,10 +12,10 @@
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/occupancy/octomap_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
-#include "services/dense/octomap_file.hpp"
 #include "services/maps/map_report.hpp"
 #include "services/slam/map_file.hpp"
 
@@ -64,7 +64,7 @@ const MapPart& choose(const MapReport& report, long long id, std::ostream& err) 
 
 void write_part(const slam::MapContents& contents, const MapPart& part, const std::string& format, std::ostream& out) {
   if (format == "tum") return geometry::write_tum_trajectory(out, poses_of(contents, part.id));
-  if (format == "bt") return dense::write_octomap(out, voxels_of(contents, part.id));
+  if (format == "bt") return occupancy::write_octomap(out, voxels_of(contents, part.id));
   const std::vector<slam::MapPoint> points = points_of(contents, part.id);
   format == "pcd" ? write_pcd(out, points) : slam::write_ply(out, points);
 }
@@ -87,31 +87,31 @@ bool is_octomap(const std::string& path) {
 }
 
 /// The middles of occupied cells.
-std::vector<slam::MapPoint> occupied_of(const dense::Volume& volume) {
+std::vector<slam::MapPoint> occupied_of(const occupancy::Volume& volume) {
   std::vector<slam::MapPoint> points;
-  volume.cells.for_each([&](const Eigen::Vector3i& cell, dense::Space space) {
+  volume.cells.for_each([&](const Eigen::Vector3i& cell, occupancy::Space space) {
     const Eigen::Vector3d middle = volume.cell_m * (cell.cast<double>().array() + 0.5);
-    if (space == dense::Space::kOccupied) points.push_back({middle.cast<float>(), 1.0F});
+    if (space == occupancy::Space::kOccupied) points.push_back({middle.cast<float>(), 1.0F});
   });
   return points;
 }
 
 /// The floor plan of a voxel map, with its YAML file. Returns the exit code.
-int write_plan(const MapRequest& request, const dense::Volume& volume, const std::vector<slam::MapPoint>& occupied,
+int write_plan(const MapRequest& request, const occupancy::Volume& volume, const std::vector<slam::MapPoint>& occupied,
                std::ostream& out, std::ostream& err) {
   const std::string yaml = fs::path(request.out).replace_extension(".yaml").string();
   if (yaml == request.out || fs::exists(yaml)) throw UsageError(yaml + " exists already: choose another name");
-  dense::FloorFinder finder;
+  occupancy::FloorFinder finder;
   for (const slam::MapPoint& point : occupied) finder.add(static_cast<double>(point.position.z()));
   const std::optional<double> floor_m = request.floor_m ? request.floor_m : finder.floor_m(1e9);
   if (!floor_m) throw UsageError(request.file + " has no occupied cell: give the height of the floor with --floor");
   constexpr std::size_t kMaxCells = 100'000'000;
-  const dense::NavigationGrid grid = dense::project(volume, *floor_m, request.heights, kMaxCells);
+  const occupancy::NavigationGrid grid = occupancy::project(volume, *floor_m, request.heights, kMaxCells);
   if (grid.cells.empty())
     throw UsageError(fmt::format("nothing is known just above the floor at {:.2f} m: --floor names another", *floor_m));
   const auto name = fs::path(request.out).filename().string();
-  const bool written = write_file(request.out, err, [&](std::ostream& file) { dense::write_pgm(file, grid); }) &&
-                       write_file(yaml, err, [&](std::ostream& file) { file << dense::map_yaml(grid, name); });
+  const bool written = write_file(request.out, err, [&](std::ostream& file) { occupancy::write_pgm(file, grid); }) &&
+                       write_file(yaml, err, [&](std::ostream& file) { file << occupancy::map_yaml(grid, name); });
   if (!written) return service::kRunFailed;
   out << fmt::format("{}, {}: {} x {} cells, floor at {:.2f} m\n", request.out, yaml, grid.columns, grid.rows,
                      *floor_m);
@@ -123,7 +123,7 @@ int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& er
   if (request.format == "tum" || request.format == "bt")
     throw UsageError(request.file + " is a voxel map: it is exported as pgm, ply or pcd");
   std::ifstream file(request.file, std::ios::binary);
-  const dense::Volume volume = dense::read_octomap(file);
+  const occupancy::Volume volume = occupancy::read_octomap(file);
   const std::vector<slam::MapPoint> occupied = occupied_of(volume);
   if (request.format == "pgm") return write_plan(request, volume, occupied, out, err);
   const bool written = write_file(request.out, err, [&](std::ostream& to) {
@@ -201,7 +201,7 @@ int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
       if (request.to_export) return write_export(request, out, err);
       print_info(request, out, err);
       return service::kOk;
-    } catch (const dense::OctomapError& error) {
+    } catch (const occupancy::OctomapError& error) {
       err << name << ": " << request.file << ": " << error.what() << "\n";
       return service::kPartialLoss;
     } catch (const slam::MapFileError& error) {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "services/dense/core/navigation_grid.hpp"
+#include "common/occupancy/navigation_grid.hpp"
 
 namespace CLI {
 class App;
@@ -19,11 +19,11 @@ struct MapRequest {
   bool info = false, to_export = false;  ///< which of the two
   std::string file;
   bool json = false;
-  std::string format;             ///< ply, pcd, tum or bt; of a voxel map ply, pcd or pgm
-  std::string out;                ///< file to write
-  long long map_id = -1;          ///< which map of the file; -1 = the one with most keyframes
-  std::optional<double> floor_m;  ///< of a voxel map; empty: found in it
-  dense::RobotHeights heights;    ///< what counts in a floor plan
+  std::string format;               ///< ply, pcd, tum or bt; of a voxel map ply, pcd or pgm
+  std::string out;                  ///< file to write
+  long long map_id = -1;            ///< which map of the file; -1 = the one with most keyframes
+  std::optional<double> floor_m;    ///< of a voxel map; empty: found in it
+  occupancy::RobotHeights heights;  ///< what counts in a floor plan
 };
 
 /// Adds `info` and `export`; parsing fills `request`, which must outlive `app`.

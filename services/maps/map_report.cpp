@@ -132,8 +132,8 @@ std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::M
   return points;
 }
 
-dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map) {
-  dense::Volume volume;
+occupancy::Volume voxels_of(const slam::MapContents& contents, slam::MapId map) {
+  occupancy::Volume volume;
   const auto cell_at = [&volume](const Eigen::Vector3d& p) {
     return Eigen::Vector3i((p / volume.cell_m).array().floor().cast<int>());
   };
@@ -144,12 +144,12 @@ dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map) {
       const Eigen::Vector3d from = keyframe->T_world_camera.translation(), way = landmark.position - from;
       const int steps = static_cast<int>(std::min(2 * way.norm() / volume.cell_m, 1e4));
       for (int i = 0; i + 2 < steps; ++i)
-        volume.cells.set(cell_at(from + (i + 0.5) / steps * way), dense::Space::kFree);
+        volume.cells.set(cell_at(from + (i + 0.5) / steps * way), occupancy::Space::kFree);
     }
   }
   for (const slam::Landmark& landmark : contents.landmarks) {
     if (map_of(contents, landmark) == map && landmark.static_probability >= 0.5)
-      volume.cells.set(cell_at(landmark.position), dense::Space::kOccupied);
+      volume.cells.set(cell_at(landmark.position), occupancy::Space::kOccupied);
   }
   return volume;
 }

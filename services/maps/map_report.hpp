@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/dense/core/volume.hpp"
+#include "common/occupancy/volume.hpp"
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 
@@ -44,7 +44,7 @@ std::vector<slam::MapPoint> points_of(const slam::MapContents& contents, slam::M
 std::vector<slam::StampedPose> poses_of(const slam::MapContents& contents, slam::MapId map);
 
 /// What landmarks show of space: they are occupied, and free is what lies between them and the keyframes that see them.
-dense::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);
+occupancy::Volume voxels_of(const slam::MapContents& contents, slam::MapId map);
 
 /// ASCII PCD 0.7: x y z static_probability, as the Point Cloud Library reads it.
 void write_pcd(std::ostream& out, const std::vector<slam::MapPoint>& points);

@@ -7,11 +7,15 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/occupancy/volume.hpp"
 #include "services/dense/core/depth_view.hpp"
 #include "services/dense/core/static_map.hpp"
-#include "services/dense/core/volume.hpp"
 
 namespace rtd::dense {
+
+using occupancy::CellBlocks;
+using occupancy::Space;
+using occupancy::Volume;
 
 /// What is kept of the depth images of the past, and how long.
 struct FreeSpaceConfig {

@@ -54,7 +54,7 @@ void remove_specks(CellBlocks<Space>& cells) {
 }  // namespace
 
 NavigationMap::NavigationMap(const NavigationConfig& config, const Eigen::Vector3d& up)
-    : config_(config), R_grid_map_(grid_rotation(up)), space_(config.space, R_grid_map_) {}
+    : config_(config), R_grid_map_(occupancy::grid_rotation(up)), space_(config.space, R_grid_map_) {}
 
 void NavigationMap::integrate(const vision::RgbdImage& image, const Eigen::Isometry3d& T_map_camera) {
   space_.follow_corrections(kMovesPerFrame);

@@ -4,11 +4,15 @@
 
 #include <optional>
 
+#include "common/occupancy/navigation_grid.hpp"
 #include "services/dense/core/free_space.hpp"
-#include "services/dense/core/navigation_grid.hpp"
 #include "services/dense/core/static_map.hpp"
 
 namespace rtd::dense {
+
+using occupancy::FloorFinder;
+using occupancy::NavigationGrid;
+using occupancy::RobotHeights;
 
 struct NavigationConfig {
   FreeSpaceConfig space;

@@ -17,12 +17,12 @@ void report_grid(const rtd::test_support::DenseOptions& options, const rtd::test
     std::printf("grid: no floor\n");
     return;
   }
-  const rtd::dense::NavigationGrid& grid = *report.grid;
+  const rtd::occupancy::NavigationGrid& grid = *report.grid;
   std::printf("grid %d x %d  floor %.3f m  %zu scans  %.1f ms CPU a frame  %.1f ms a plan\n", grid.columns, grid.rows,
               grid.floor_m, report.scans, report.grid_integrate_ms, report.grid_ms);
   if (!pgm_file.empty()) {
     std::ofstream file(pgm_file, std::ios::binary);
-    rtd::dense::write_pgm(file, grid);
+    rtd::occupancy::write_pgm(file, grid);
   }
   if (!options.source.starts_with("synthetic:")) return;
   const rtd::test_support::GridTruth truth(options.source, grid.cell_m, options.navigation.heights);

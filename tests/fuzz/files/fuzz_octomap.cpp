@@ -7,15 +7,15 @@
 #include <ctime>
 #include <sstream>
 
-#include "services/dense/octomap_file.hpp"
+#include "common/occupancy/octomap_file.hpp"
 #include "tests/fuzz/files/text_mutation.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 namespace {
 
-constexpr std::size_t kMaxAllocated = std::size_t{300} << 20;   // 200 million cells, and 48 nodes a byte of the file
-constexpr std::size_t kFewCells = 20'000;                       // liboctomap takes long for more
+constexpr std::size_t kMaxAllocated = std::size_t{300} << 20;  // 200 million cells, and 48 nodes a byte of the file
+constexpr std::size_t kFewCells = 20'000;                      // liboctomap takes long for more
 constexpr double kMost_s = 20;
 
 std::string write(const Volume& volume) {
@@ -78,18 +78,18 @@ std::string try_input(const io::Bytes& input, std::uint64_t& maps) {
 }
 
 }  // namespace
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy
 
 int main(int argc, char** argv) {
   using namespace rtd;
-  const std::vector<io::Bytes> files = dense::seeds();
+  const std::vector<io::Bytes> files = occupancy::seeds();
   std::uint64_t maps = 0;
   return testing::run_fuzz(
       argc, argv, "fuzz_octomap_failed.bt",
       [&](std::mt19937_64& random) {
-        if (random() % 4 == 0) return dense::random_nodes(random);
+        if (random() % 4 == 0) return occupancy::random_nodes(random);
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);
       },
-      [&](const io::Bytes& input, std::mt19937_64&) { return dense::try_input(input, maps); },
+      [&](const io::Bytes& input, std::mt19937_64&) { return occupancy::try_input(input, maps); },
       [&] { return std::to_string(maps) + " of them maps"; });
 }

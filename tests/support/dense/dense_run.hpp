@@ -33,8 +33,8 @@ struct DenseReport {
   std::size_t frames = 0, integrated = 0, voxels = 0;
   std::uint64_t fused = 0, masked = 0, carved = 0;
   double integrate_ms = 0;  ///< mean CPU time of a fused frame
-  std::optional<dense::NavigationGrid> grid;
-  dense::Volume volume;
+  std::optional<occupancy::NavigationGrid> grid;
+  occupancy::Volume volume;
   std::size_t scans = 0;                      ///< that the plan keeps
   double grid_integrate_ms = 0, grid_ms = 0;  ///< mean CPU time of a fused frame, CPU time of one plan
 };

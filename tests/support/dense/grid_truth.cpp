@@ -30,7 +30,7 @@ Eigen::AlignedBox3f static_extent(const Geometry& geometry) {
 
 }  // namespace
 
-GridTruth::GridTruth(const std::string& source, double cell_m, const dense::RobotHeights& heights)
+GridTruth::GridTruth(const std::string& source, double cell_m, const occupancy::RobotHeights& heights)
     : cell_m_(cell_m), heights_(heights) {
   const camera::SyntheticOptions options = camera::parse_synthetic_options(camera::parse_source_uri(source));
   const camera::synthetic::Scene scene(options.scene, options.seed);
@@ -121,19 +121,19 @@ bool GridTruth::all_around(const Eigen::Vector2i& cell, Is is) const {
   return true;
 }
 
-GridReport GridTruth::judge(const dense::NavigationGrid& grid) const {
+GridReport GridTruth::judge(const occupancy::NavigationGrid& grid) const {
   GridReport report;
   for (const Cell& cell : cells_) report.truly_free += cell.solid == 0 ? 1 : 0;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const Eigen::Vector2i cell = grid.first + Eigen::Vector2i(column, row);
       const Cell& truth = at(cell);
-      if (grid.at(cell) == dense::NavigationGrid::kFree) {
+      if (grid.at(cell) == occupancy::NavigationGrid::kFree) {
         ++report.free;
         report.wrong_free += all_around(cell, [](const Cell& c) { return c.solid == kAll; }) ? 1 : 0;
         report.mostly_wrong_free += 2 * truth.solid > kAll ? 1 : 0;
         report.found_free += truth.solid == 0 ? 1 : 0;
-      } else if (grid.at(cell) == dense::NavigationGrid::kOccupied) {
+      } else if (grid.at(cell) == occupancy::NavigationGrid::kOccupied) {
         ++report.occupied;
         const bool wrong = all_around(cell, [](const Cell& c) { return c.solid == 0; });
         report.wrong_occupied += wrong ? 1 : 0;

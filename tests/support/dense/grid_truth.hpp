@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/camera/synthetic/scene.hpp"
-#include "services/dense/core/navigation_grid.hpp"
+#include "common/occupancy/navigation_grid.hpp"
 
 namespace rtd::test_support {
 
@@ -33,8 +33,8 @@ struct GridReport {
 class GridTruth {
  public:
   /// `source`: "synthetic:NAME?..."; a plan's frame is the scene's world.
-  GridTruth(const std::string& source, double cell_m, const dense::RobotHeights& heights);
-  GridReport judge(const dense::NavigationGrid& grid) const;
+  GridTruth(const std::string& source, double cell_m, const occupancy::RobotHeights& heights);
+  GridReport judge(const occupancy::NavigationGrid& grid) const;
 
  private:
   static constexpr int kSamples = 5;  ///< of a cell, along each axis
@@ -50,7 +50,7 @@ class GridTruth {
   bool all_around(const Eigen::Vector2i& cell, Is is) const;
 
   double cell_m_;
-  dense::RobotHeights heights_;
+  occupancy::RobotHeights heights_;
   Eigen::Vector2i first_;
   int columns_ = 0, rows_ = 0;
   std::vector<Cell> cells_;

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "services/dense/octomap_file.hpp"
+#include "common/occupancy/octomap_file.hpp"
 #include "services/slam/map_file.hpp"
 #include "tests/support/sample_map.hpp"
 
@@ -117,23 +117,23 @@ TEST_F(MapCommand, exports_landmarks_as_voxels_with_the_free_rays_to_them) {
   ASSERT_EQ(run({"export", file_, "--format", "bt", "-o", path("room.bt")}), 0) << err_.str();
   EXPECT_THAT(err_.str(), HasSubstr("surfaces without landmarks are missing"));
   std::ifstream file(path("room.bt"), std::ios::binary);
-  const dense::Volume volume = dense::read_octomap(file);
+  const occupancy::Volume volume = occupancy::read_octomap(file);
   std::size_t free = 0, occupied = 0;
   volume.cells.for_each(
-      [&](const Eigen::Vector3i&, dense::Space space) { ++(space == dense::Space::kFree ? free : occupied); });
+      [&](const Eigen::Vector3i&, occupancy::Space space) { ++(space == occupancy::Space::kFree ? free : occupied); });
   EXPECT_GT(occupied, 10U);
   EXPECT_GT(free, occupied);
 }
 
 TEST_F(MapCommand, exports_a_voxel_map_as_floor_plan_with_the_heights_asked_for) {
-  dense::Volume volume;
+  occupancy::Volume volume;
   for (int i = 0; i < 400; ++i) {
-    volume.cells.set({i % 20, i / 20, 0}, dense::Space::kOccupied);  // the floor
-    volume.cells.set({i % 20, i / 20, 3}, dense::Space::kFree);
+    volume.cells.set({i % 20, i / 20, 0}, occupancy::Space::kOccupied);  // the floor
+    volume.cells.set({i % 20, i / 20, 3}, occupancy::Space::kFree);
   }
-  volume.cells.set({5, 5, 16}, dense::Space::kOccupied);  // 0.8 m above it
+  volume.cells.set({5, 5, 16}, occupancy::Space::kOccupied);  // 0.8 m above it
   std::ofstream bt(path("map.bt"), std::ios::binary);
-  dense::write_octomap(bt, volume);
+  occupancy::write_octomap(bt, volume);
   bt.close();
   ASSERT_EQ(run({"export", path("map.bt"), "--format", "pgm", "-o", path("tall.pgm")}), 0) << err_.str();
   ASSERT_EQ(run({"export", path("map.bt"), "--format", "pgm", "--max-height", "0.5", "-o", path("low.pgm")}), 0);

@@ -5,9 +5,9 @@
 #include <iosfwd>
 #include <stdexcept>
 
-#include "services/dense/core/volume.hpp"
+#include "common/occupancy/volume.hpp"
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 
 /// A file that is no OctoMap of occupied and free cells (.bt), or a damaged one; what() says why.
 class OctomapError : public std::runtime_error {
@@ -22,4 +22,4 @@ void write_octomap(std::ostream& out, const Volume& volume);
 /// trusts a file: a damaged one would make it recurse without end. Throws OctomapError.
 Volume read_octomap(std::istream& in);
 
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "services/dense/core/volume.hpp"
+#include "common/occupancy/volume.hpp"
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 
 /// Which heights above the floor matter to a robot.
 struct RobotHeights {
@@ -70,4 +70,4 @@ void write_pgm(std::ostream& out, const NavigationGrid& grid);
 /// The YAML file beside it.
 std::string map_yaml(const NavigationGrid& grid, const std::string& image);
 
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

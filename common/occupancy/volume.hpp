@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 
 /// Cells of space in blocks of 16 x 16 x 16, each with a value that is T{} until it is set. Cell i covers
 /// [i, i + 1) * cell along each axis. Bounded by the number of blocks. One thread.
@@ -95,4 +95,4 @@ struct Volume {
   CellBlocks<Space> cells;
 };
 
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

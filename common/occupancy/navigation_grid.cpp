@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/dense/core/navigation_grid.hpp"
+#include "common/occupancy/navigation_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 namespace {
 
 /// What counts for the floor plan in a column of cells.
@@ -133,4 +133,4 @@ std::string map_yaml(const NavigationGrid& grid, const std::string& image) {
   return text.str();
 }
 
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

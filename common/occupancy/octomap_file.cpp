@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/dense/octomap_file.hpp"
+#include "common/occupancy/octomap_file.hpp"
 
 #include <octomap/OcTree.h>
 
@@ -10,7 +10,7 @@
 
 #include "common/io/text.hpp"
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 namespace {
 
 constexpr int kDepth = 16, kCenter = 1 << (kDepth - 1);  // of an OctoMap: cells from -32768 to 32767
@@ -118,4 +118,4 @@ Volume read_octomap(std::istream& in) {
   return volume;
 }
 
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/dense/core/navigation_grid.hpp"
+#include "common/occupancy/navigation_grid.hpp"
 
 #include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
@@ -9,7 +9,7 @@
 #include <limits>
 #include <sstream>
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 namespace {
 
 constexpr RobotHeights kHeights;
@@ -48,8 +48,8 @@ TEST(FloorFinder, finds_the_lowest_level_with_many_points) {
     floor.add(-0.8 + 0.0001 * (i % 100));  // floor
     floor.add(-0.1 + 0.0001 * (i % 100));  // tables
     floor.add(1.6);
-    floor.add(1.6);                        // ceiling
-    floor.add(-1.5 + 0.003 * i);           // walls, seen deeper through a hole in the floor
+    floor.add(1.6);               // ceiling
+    floor.add(-1.5 + 0.003 * i);  // walls, seen deeper through a hole in the floor
   }
   ASSERT_TRUE(floor.floor_m(0.5).has_value());
   EXPECT_NEAR(*floor.floor_m(0.5), -0.795, 0.01) << "m";
@@ -131,4 +131,4 @@ TEST(MapFiles, are_read_by_the_rules_of_map_server) {
 }
 
 }  // namespace
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/dense/octomap_file.hpp"
+#include "common/occupancy/octomap_file.hpp"
 
 #include <gmock/gmock.h>
 #include <octomap/OcTree.h>
@@ -8,7 +8,7 @@
 #include <random>
 #include <sstream>
 
-namespace rtd::dense {
+namespace rtd::occupancy {
 namespace {
 
 using ::testing::HasSubstr;
@@ -105,4 +105,4 @@ TEST(OctomapFile, survives_files_that_were_cut_or_damaged) {
 }
 
 }  // namespace
-}  // namespace rtd::dense
+}  // namespace rtd::occupancy
