@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/process/executable.hpp"
@@ -23,7 +24,6 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/standard_streams.hpp"
-#include "common/camera/source_schemes.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/ablation/ablation.hpp"
 #include "services/evaluation/core/report/report.hpp"

@@ -13,21 +13,21 @@ namespace rtd::filter {
 namespace {
 
 using Eigen::Vector3d;
-using Points = std::vector<Vector3d>;
+using WorldPoints = std::vector<Vector3d>;
 
 // How things are built: of the smaller side across the view, because no back is seen.
 constexpr double kThickness = 0.6, kBoxThickness = 1.3;
 constexpr double kUpperBody = 0.6;  // share of what is seen of a person, from above: legs swing
 
 /// The interval without the outer twentieths of what lies along a direction.
-std::pair<double, double> spread_along(const Points& points, const Vector3d& direction) {
+std::pair<double, double> spread_along(const WorldPoints& points, const Vector3d& direction) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Vector3d& point : points) values.push_back(point.dot(direction));
   return vision::spread(values);
 }
 
-double median_along(const Points& points, const Vector3d& direction) {
+double median_along(const WorldPoints& points, const Vector3d& direction) {
   std::vector<double> values;
   values.reserve(points.size());
   for (const Vector3d& point : points) values.push_back(point.dot(direction));
@@ -38,7 +38,7 @@ double width(const std::pair<double, double>& spread) {
   return spread.second - spread.first;
 }
 
-Vector3d median(const Points& points) {
+Vector3d median(const WorldPoints& points) {
   return {median_along(points, Vector3d::UnitX()), median_along(points, Vector3d::UnitY()),
           median_along(points, Vector3d::UnitZ())};
 }
@@ -68,8 +68,8 @@ std::vector<SeenPoint> upper_part(const std::vector<SeenPoint>& surface) {
   return upper;
 }
 
-Points to_world(const std::vector<SeenPoint>& surface, const Eigen::Isometry3d& T_world_camera) {
-  Points points;
+WorldPoints to_world(const std::vector<SeenPoint>& surface, const Eigen::Isometry3d& T_world_camera) {
+  WorldPoints points;
   points.reserve(surface.size());
   for (const SeenPoint& point : surface) points.emplace_back(T_world_camera * point.p_camera_m);
   return points;
@@ -86,7 +86,7 @@ TintShares shares_of_tints(const std::vector<SeenPoint>& points) {
 ObjectLook look_at(const std::vector<SeenPoint>& points, bool upright, const Eigen::Isometry3d& T_world_camera) {
   ObjectLook look;
   const std::vector<SeenPoint> surface = one_surface(points), upper = upper_part(surface);
-  const Points seen = to_world(surface, T_world_camera);
+  const WorldPoints seen = to_world(surface, T_world_camera);
   look.tints = shares_of_tints(upper);
   look.surface = median(seen);
   for (int axis = 0; axis < 3; ++axis)
