@@ -19,7 +19,7 @@ constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
 
-double seconds_between(const Frame& earlier, const Frame& later) {
+double frame_gap_s(const Frame& earlier, const Frame& later) {
   return static_cast<double>(msg::minus_ns(later.stamp_ns, earlier.stamp_ns)) / kNanosecondsPerSecond;
 }
 
@@ -164,7 +164,7 @@ ExpectedPose Tracker::predict(const Frame& frame) const {
   if (const auto held = state_ == msg::TrackingState::kPredicted ? hold(frame) : std::nullopt) {
     return {held->T_world_camera};
   }
-  const double gap_s = seconds_between(*last_.frame, frame);
+  const double gap_s = frame_gap_s(*last_.frame, frame);
   if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return {last_.T_world_camera};
   return {last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s)};
 }
@@ -172,7 +172,7 @@ ExpectedPose Tracker::predict(const Frame& frame) const {
 /// The pose that may be claimed though nothing was measured; empty when too long ago.
 std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
   if (last_.frame == nullptr) return std::nullopt;
-  const double gap_s = seconds_between(*last_.frame, frame);
+  const double gap_s = frame_gap_s(*last_.frame, frame);
   const bool recent = gap_s > 0 && gap_s <= config_.prediction.max_hold_s;
   if (!config_.techniques.prediction || !motion_ || !msg::has_pose(state_) || !recent) return std::nullopt;
   CameraMotion motion = *motion_;
@@ -216,7 +216,7 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 
 /// The frame was tracked. After a recognised place some more must agree before a pose counts.
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
-  const double elapsed_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
+  const double elapsed_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
   consistency_.add(*frame, *outcome.map, tracking, elapsed_s);
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
@@ -262,7 +262,7 @@ bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_wo
   if (follows_prior(frame) &&
       pose_distance2(*expected_, {T_world_camera, geometry::Matrix6d::Zero()}) < kMaxPoseDistance2)
     return true;
-  const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, frame);
+  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
   if (!msg::has_pose(state_) || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return false;
   const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
   const auto within = [&](const Eigen::Isometry3d& T, double limit_m, double limit_rad) {
@@ -288,7 +288,7 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Fo
 
 /// The frame is the last tracked one from now on.
 void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
-  const double gap_s = last_.frame == nullptr ? 0 : seconds_between(*last_.frame, *frame);
+  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
   const bool in_time = (msg::has_pose(state_) || relocalizer_.entered()) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
   const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
   const bool continuous = in_time && (!motion_ || is_steady(*motion_, T_last_camera, gap_s));
