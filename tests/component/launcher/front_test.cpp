@@ -92,7 +92,7 @@ TEST_F(FrontTest, a_replay_with_viewer_gives_it_the_same_bus_and_ends_it) {
   pid_t viewer = 0;
   std::string arguments;
   std::getline(std::ifstream(received) >> viewer, arguments);
-  EXPECT_EQ(arguments, " --domain 9 --set viewer.port=81 --log-level warning");
+  EXPECT_EQ(arguments, " --set viewer.port=81 --domain=9 --log-level warning");
   for (int i = 0; i < 2000 && kill(viewer, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_NE(kill(viewer, 0), 0) << "it still runs";
 }
