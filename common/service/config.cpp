@@ -359,8 +359,13 @@ std::vector<std::string> to_command_line(const std::vector<GivenOption>& given, 
                                          const std::vector<std::string>& without) {
   std::vector<std::string> line;
   for (const GivenOption& option : given) {
-    if (section_of(option.key) == section && std::ranges::count(without, option.key) == 0)
-      line.push_back(fmt::format("{}={}", option.flag, fmt::join(option.words, ",")));
+    if (section_of(option.key) != section || std::ranges::count(without, option.key) > 0) continue;
+    const std::string value = fmt::format("{}", fmt::join(option.words, ","));
+    if (value.empty()) {  // "--map=" would take the next word for its value
+      line.insert(line.end(), {"--set", option.key + "=\"\""});
+    } else {
+      line.push_back(option.flag + '=' + value);
+    }
   }
   return line;
 }

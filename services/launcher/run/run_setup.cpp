@@ -222,7 +222,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.pace = service::to_string(service::parse_pace(setup.pace));
   setup.source = camera::complete_uri(setup.source);
   setup.replay = choose_replay(setup, setup.bus_options.robot);
-  if (setup.replay) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
+  if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
   choose_detector(setup);

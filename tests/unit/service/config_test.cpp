@@ -211,6 +211,8 @@ TEST_F(OptionsTest, are_forwarded_to_the_service_whose_keys_they_are) {
   EXPECT_THAT(to_command_line(given_, "filter", {"filter.count"}),
               ::testing::UnorderedElementsAre("--names=x,y", "--enabled=true"));
   EXPECT_THAT(to_command_line(given_, "slam"), ::testing::IsEmpty());
+  EXPECT_THAT(to_command_line({{"slam.map.load", "--map", {""}}}, "slam"),
+              ::testing::ElementsAre("--set", "slam.map.load=\"\""));
 }
 
 TEST(PartOfASection, leaves_the_other_keys_to_the_service) {
