@@ -21,6 +21,7 @@ import sys
 
 import stress
 
+WITH_DETECTOR = ("rtd", "semantic", "epipolar", "rtd-paper")
 JITTER = 0.03  # standard deviation of the edges of a box, of its size
 COLUMNS = ["clip", "mode", "runs", "ATE median, m", "best", "worst", "as published", "NEES", "coverage, least",
            "precision", "recall"]
@@ -34,7 +35,7 @@ def perturbation(run: int) -> list:
 
 def command(clip: str, mode: str, run: int, settings: list, folder: pathlib.Path) -> list:
     task = [str(stress.PROGRAM), "--source", clip, "--mode", mode, *perturbation(run)]
-    if mode in ("rtd", "semantic", "epipolar", "rtd-paper"):
+    if mode in WITH_DETECTOR:
         task += ["--detector", "real", "--detections", str(folder / (pathlib.Path(clip).name + ".detections"))]
         task += ["--detector-seed", str(run), "--detector-jitter", "0" if run == 0 else str(JITTER)]
     for setting in settings:
