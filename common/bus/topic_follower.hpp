@@ -60,7 +60,7 @@ class TopicFollower {
   bool reads(const std::string& topic) const { return wanted_.contains(topic); }
   /// Those of a topic; none when it is not known.
   const Writers& writers(const std::string& topic) const;
-  /// The DDS names of those that have writers.
+  /// The DDS names of those that have writers; without on_demand also of those that had.
   std::vector<std::string> topics() const;
 
  private:

@@ -43,6 +43,8 @@ inline constexpr std::array<NamedFilterMode, 6> kFilterModes{{
     {FilterMode::kRtd, "rtd", BoxUse::kHelpful},
 }};
 
+inline constexpr const char* kDefaultFilterMode = "rtd";
+
 inline const NamedFilterMode& named(FilterMode mode) {
   return *std::ranges::find(kFilterModes, mode, &NamedFilterMode::mode);
 }

@@ -241,8 +241,12 @@ std::vector<std::string> ConfigBinder::keys() const {
 
 void ConfigBinder::part_of_section(std::string_view name, const std::function<void(ConfigBinder&)>& bind) {
   in_part_.emplace_back(name);
+  nest(name, bind);
+}
+
+void ConfigBinder::nest(std::string_view prefix, const std::function<void(ConfigBinder&)>& bind) {
   const std::string outer = prefix_;
-  prefix_.append(name).append(".");
+  prefix_.append(prefix).append(".");
   bind(*this);
   prefix_ = outer;
 }
@@ -329,6 +333,12 @@ std::string shown_default(std::string printed) {
   return printed == "false" || printed == "\"\"" || printed == "[]" ? "" : printed;
 }
 
+/// "--rate" of "-r,--rate".
+std::string first_long_name(const std::string& flags) {
+  const std::size_t begin = flags.find("--");
+  return begin == std::string::npos ? flags : flags.substr(begin, flags.find(',', begin) - begin);
+}
+
 }  // namespace
 
 void ConfigBinder::add_options(CLI::App& app, std::vector<GivenOption>& given) const {
@@ -336,8 +346,9 @@ void ConfigBinder::add_options(CLI::App& app, std::vector<GivenOption>& given) c
     if (setting.flags.empty()) continue;
     std::string help = fmt::format("{} ({})", setting.help, setting.key);
     help.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(help.front())));
-    const auto keep = [&given, key = setting.key, flags = setting.flags](std::vector<std::string> words) {
-      given.push_back({key, flags.substr(flags.rfind(',') + 1), std::move(words)});
+    const auto keep = [&given, key = setting.key,
+                       flag = first_long_name(setting.flags)](std::vector<std::string> words) {
+      if (words != std::vector<std::string>{""}) given.push_back({key, flag, std::move(words)});
     };
     CLI::Option* option = nullptr;
     if (setting.is_switch) {
@@ -360,12 +371,7 @@ std::vector<std::string> to_command_line(const std::vector<GivenOption>& given, 
   std::vector<std::string> line;
   for (const GivenOption& option : given) {
     if (section_of(option.key) != section || std::ranges::count(without, option.key) > 0) continue;
-    const std::string value = fmt::format("{}", fmt::join(option.words, ","));
-    if (value.empty()) {  // "--map=" would take the next word for its value
-      line.insert(line.end(), {"--set", option.key + "=\"\""});
-    } else {
-      line.push_back(option.flag + '=' + value);
-    }
+    line.push_back(fmt::format("{}={}", option.flag, fmt::join(option.words, ",")));
   }
   return line;
 }

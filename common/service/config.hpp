@@ -32,7 +32,7 @@ struct Range {
 /// An option of the command line that was given: the value of a key.
 struct GivenOption {
   std::string key;                 ///< "slam.map.load"
-  std::string flag;                ///< "--map"
+  std::string flag;                ///< "--map": its first long name
   std::vector<std::string> words;  ///< one; of a list each of its values; of a switch "true" or "false"
 };
 
@@ -90,10 +90,7 @@ class ConfigBinder {
   /// Binds a nested struct: its keys begin with `prefix.`.
   template <class Struct>
   void section(std::string_view prefix, Struct& nested) {
-    const std::string outer = prefix_;
-    prefix_.append(prefix).append(".");
-    nested.bind(*this);
-    prefix_ = outer;
+    nest(prefix, [&nested](ConfigBinder& binder) { nested.bind(binder); });
   }
 
   /// The same for a part of the settings of another service. The keys of the section that were not bound are that
@@ -101,7 +98,7 @@ class ConfigBinder {
   void part_of_section(std::string_view name, const std::function<void(ConfigBinder&)>& bind);
 
   /// Adds the options of all settings to a command line. Those that are given are appended to `given`, which must
-  /// outlive the parsing; the binder need not.
+  /// outlive the parsing; the binder need not. One with an empty value counts as not given.
   void add_options(CLI::App& app, std::vector<GivenOption>& given) const;
   /// Sets the key of an option. Throws ConfigError naming the option for a value that is not allowed.
   void set(const GivenOption& option);
@@ -120,6 +117,8 @@ class ConfigBinder {
   std::string print() const;
 
  private:
+  /// Binds settings whose keys begin with `prefix.`.
+  void nest(std::string_view prefix, const std::function<void(ConfigBinder&)>& bind);
   template <class T, class Allowed>
   Bound add(std::string_view key, T& value, std::string wanted, Allowed allowed, std::string_view help);
   Setting* find(const std::string& key);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
 #include "services/filter/core/filter_config.hpp"
 
@@ -13,7 +14,7 @@ namespace rtd::filter {
 /// Section `filter` of the configuration.
 struct ServiceConfig {
   FilterConfig core;
-  std::string mode = "rtd";
+  std::string mode = msg::kDefaultFilterMode;
   std::string detector = "auto";
   int detections_timeout_ms = 5000;
   int feedback_timeout_ms = 3000;

@@ -54,7 +54,7 @@ struct LauncherConfig {
 
 /// What `rtd run` knows of the settings of services: they are options of its own, which it forwards.
 struct ServiceSettings {
-  std::string filter_mode = msg::kFilterModes.back().name;
+  std::string filter_mode = msg::kDefaultFilterMode;
   std::string model;   ///< ONNX file; empty: search
   std::string engine;  ///< of the detector
   service::MapFileConfig map;

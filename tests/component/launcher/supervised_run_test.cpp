@@ -59,7 +59,7 @@ TEST_F(SupervisedRunTest, gives_every_service_its_arguments_and_a_log) {
   rtd_.run(arguments({"--pace", "lockstep", "--domain", "7", "--frames", "3", "--set", "slam.x=1"}));
   EXPECT_THAT(log("filter"),
               AllOf(HasSubstr("--pace lockstep"), HasSubstr("--dds=inprocess --domain=7"), HasSubstr("--set slam.x=1"),
-                    HasSubstr("--mode=geometry --set filter.detector=off")));
+                    HasSubstr("--filter=geometry --set filter.detector=off")));
   EXPECT_THAT(log("slam"), HasSubstr("--out " + (scratch_ / "out")));
   EXPECT_THAT(log("camera"), AllOf(HasSubstr("--source synthetic:office?frames=5"), HasSubstr("--frames 3"),
                                    HasSubstr("--wait-for filter,slam"), Not(HasSubstr("detector"))));

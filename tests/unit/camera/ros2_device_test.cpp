@@ -8,7 +8,6 @@
 #include <limits>
 #include <set>
 
-#include "common/camera/source_factory.hpp"
 #include "services/camera/core/live/device_source.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/played_device.hpp"
@@ -387,25 +386,6 @@ TEST_F(Ros2DeviceTest, what_came_while_it_opened_is_old) {
   DeviceSource played = source();
   ASSERT_TRUE(played.open());
   EXPECT_TRUE(script_.messages.empty());
-}
-
-TEST(LiveOptionsTest, name_their_topics) {
-  const LiveOptions options = parse_live_options("ros2:/cam/color/image_raw/compressed,cam/depth?tolerance_ms=5");
-  EXPECT_EQ(options.topics.color, "/cam/color/image_raw/compressed");
-  EXPECT_EQ(options.topics.depth, "/cam/depth");
-  EXPECT_EQ(options.topics.info, "/cam/color/camera_info");
-  EXPECT_EQ(options.tolerance_ns, 5'000'000);
-  EXPECT_EQ(parse_live_options("ros2:/a/x,/b,/c").topics.info, "/c");
-  EXPECT_EQ(parse_live_options("ros2:/a/x,/b/depth/compressedDepth").topics.depth_info, "/b/camera_info");
-  EXPECT_EQ(parse_live_options("ros2:/a/x,/b/y?depth_info=e").topics.depth_info, "/e");
-  EXPECT_TRUE(parse_live_options("ros2:/a,/b?registered=1").registered);
-  for (const char* uri : {"ros2:", "ros2:/a", "ros2:/a,/b,/c,/d", "ros2:/a,,/c", "ros2:/a,/a"}) {
-    EXPECT_THAT([&] { parse_live_options(uri); }, ThrowsMessage<SourceError>(HasSubstr("ros2:COLOR_TOPIC,DEPTH_TOPIC")))
-        << uri;
-  }
-  EXPECT_THAT([] { parse_live_options("ros2:/a,/b?tolerance_ms=x"); }, ThrowsMessage<SourceError>(HasSubstr("'x'")));
-  EXPECT_THAT([] { parse_live_options("ros2:/a,/b?fps=3"); }, ThrowsMessage<SourceError>(HasSubstr("'fps'")));
-  EXPECT_THAT([] { make_source("ros2:/a,/b"); }, ThrowsMessage<SourceError>(HasSubstr("running camera")));
 }
 
 }  // namespace

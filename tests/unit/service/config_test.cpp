@@ -189,6 +189,14 @@ TEST_F(OptionsTest, set_keys_of_every_kind) {
   EXPECT_FALSE(sample_.enabled);
 }
 
+/// Forwarded as "--mode=", it would take the next word for its value.
+TEST_F(OptionsTest, an_empty_value_counts_as_not_given) {
+  give({"--mode", "", "--names", "", "--count", "7"});
+  EXPECT_EQ(sample_.mode, "rtd");
+  EXPECT_THAT(sample_.names, ::testing::ElementsAre("a"));
+  EXPECT_THAT(to_command_line(given_, "filter"), ::testing::ElementsAre("--count=7"));
+}
+
 TEST_F(OptionsTest, the_last_one_counts) {
   give({"--count", "7", "--count", "8"});
   EXPECT_EQ(sample_.count, 8);
@@ -211,8 +219,6 @@ TEST_F(OptionsTest, are_forwarded_to_the_service_whose_keys_they_are) {
   EXPECT_THAT(to_command_line(given_, "filter", {"filter.count"}),
               ::testing::UnorderedElementsAre("--names=x,y", "--enabled=true"));
   EXPECT_THAT(to_command_line(given_, "slam"), ::testing::IsEmpty());
-  EXPECT_THAT(to_command_line({{"slam.map.load", "--map", {""}}}, "slam"),
-              ::testing::ElementsAre("--set", "slam.map.load=\"\""));
 }
 
 TEST(PartOfASection, leaves_the_other_keys_to_the_service) {
