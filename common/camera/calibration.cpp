@@ -119,6 +119,29 @@ std::optional<int> family_in(const std::string& name) {
   return std::nullopt;
 }
 
+std::string lower_case(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+/// A camera of config/cameras.
+struct KnownCamera {
+  std::string file;  ///< its name there
+  const std::string& text;
+};
+
+/// The camera that a path names, the innermost folder first.
+std::optional<KnownCamera> known_camera(const std::filesystem::path& folder) {
+  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    const std::string name = lower_case(part->string());
+    if (is_bonn_name(name)) return KnownCamera{"bonn.yaml", bonn_camera_yaml()};
+    if (const std::optional<int> family = family_in(name))
+      return KnownCamera{"tum_fr" + std::to_string(*family) + ".yaml", tum_camera_yaml(*family)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void apply(const Calibration& calibration, SourceInfo& info) {
@@ -158,22 +181,24 @@ Calibration read_calibration(const std::string& file) {
 std::optional<int> tum_family(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-    std::string name = part->string();
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-    if (const std::optional<int> family = family_in(name)) return family;
+    if (const std::optional<int> family = family_in(lower_case(part->string()))) return family;
   }
   return std::nullopt;
+}
+
+bool is_bonn_name(const std::string& folder_name) {
+  return folder_name.starts_with("rgbd_bonn_");
 }
 
 Calibration load_calibration(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.yaml";
   if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
-  if (const std::optional<int> family = tum_family(std::filesystem::absolute(folder))) {
-    return parse_calibration(tum_camera_yaml(*family), "config/cameras/tum_fr" + std::to_string(*family) + ".yaml");
-  }
+  if (const std::optional<KnownCamera> known = known_camera(std::filesystem::absolute(folder)))
+    return parse_calibration(known->text, "config/cameras/" + known->file);
   throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
                     " with one 'key: value' a line, keys " + kAllowedKeys +
-                    "; or name the folder after its TUM camera (freiburg1, freiburg2, freiburg3)");
+                    "; or name the folder after its TUM camera (freiburg1, freiburg2, freiburg3) or "
+                    "its Bonn sequence (rgbd_bonn_NAME)");
 }
 
 std::string to_yaml(const Calibration& calibration) {

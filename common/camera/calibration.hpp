@@ -34,17 +34,24 @@ void apply(const Calibration& calibration, SourceInfo& info);
 /// Throws SourceError naming `origin` for images larger than the frame type.
 void check_frame_size(double width_px, double height_px, const std::string& origin);
 
-/// Calibration of a TUM-layout folder: its calibration.yaml, else the TUM family in its path (freiburg1 or fr1, ...;
-/// the values of config/cameras/, compiled in). Throws SourceError with what to write.
+/// Calibration of a TUM-layout folder: its calibration.yaml, else that of the camera that its path names, the innermost
+/// folder first (freiburg1 or fr1, ..., rgbd_bonn_...; the values of config/cameras/, compiled in). Throws SourceError
+/// with what to write.
 Calibration load_calibration(const std::filesystem::path& folder);
 
 /// 1, 2 or 3 when the path names a TUM camera family, the innermost folder first.
 std::optional<int> tum_family(const std::filesystem::path& folder);
+
+/// Whether the name of a folder is that of a sequence of the Bonn RGB-D Dynamic Dataset: rgbd_bonn_balloon, ...
+bool is_bonn_name(const std::string& folder_name);
 
 /// The calibration as a file that parse_calibration() reads back.
 std::string to_yaml(const Calibration& calibration);
 
 /// Text of config/cameras/tum_fr<family>.yaml, family 1..3. The definition is generated from these files.
 const std::string& tum_camera_yaml(int family);
+
+/// Text of config/cameras/bonn.yaml, the camera of the Bonn RGB-D Dynamic Dataset. Generated as above.
+const std::string& bonn_camera_yaml();
 
 }  // namespace rtd::camera

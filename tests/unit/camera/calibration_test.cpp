@@ -110,6 +110,20 @@ TEST(LoadCalibration, knows_all_three_families) {
   EXPECT_FALSE(load_calibration(fr3.path()).camera.distorted());
 }
 
+TEST(LoadCalibration, knows_the_camera_of_a_bonn_sequence_by_its_name) {
+  const SequenceFolder folder("rgbd_bonn_balloon");
+  const Calibration bonn = load_calibration(folder.path());
+  EXPECT_DOUBLE_EQ(bonn.camera.parameters().fx, 542.822841);
+  EXPECT_DOUBLE_EQ(bonn.camera.parameters().cy, 237.756098);
+  EXPECT_EQ(bonn.camera.parameters().distortion, (std::array<double, 8>{0.039903, -0.099343, -0.000730, -0.000144, 0}));
+  EXPECT_DOUBLE_EQ(bonn.depth_scale_m, 1.0 / 5000);
+}
+
+TEST(LoadCalibration, the_innermost_folder_that_names_a_camera_decides) {
+  const SequenceFolder folder("rgbd_bonn_crowd/fr2_desk");
+  EXPECT_DOUBLE_EQ(load_calibration(folder.path()).camera.parameters().fx, 520.908620);
+}
+
 TEST(LoadCalibration, names_what_to_write_when_there_is_none) {
   const SequenceFolder folder("kitchen");
   EXPECT_THAT([&] { load_calibration(folder.path()); },
