@@ -82,15 +82,6 @@ nlohmann::json report_of(const std::filesystem::path& folder) {
   return nlohmann::json::parse(io::read_text(folder / "report.json").value_or(""), nullptr, false);
 }
 
-Spread spread_of(const std::vector<double>& values) {
-  std::vector<double> known;
-  std::ranges::copy_if(values, std::back_inserter(known), [](double v) { return std::isfinite(v); });
-  if (known.empty()) return {};
-  std::ranges::sort(known);
-  const std::size_t n = known.size();
-  return {n % 2 == 1 ? known[n / 2] : (known[n / 2 - 1] + known[n / 2]) / 2, known.front(), known.back()};
-}
-
 AblationRow row_of(const std::string& source, const Variant& variant, const std::vector<const Measurement*>& runs) {
   AblationRow row{source, variant, static_cast<int>(runs.size()), 0, "", {}, {}, {}, {}, {}, {}, {}};
   const auto spread = [&](double Measurement::*value) {

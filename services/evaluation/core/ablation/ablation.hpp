@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "services/evaluation/core/report/spread.hpp"
+
 namespace rtd::eval {
 
 /// The mode that the others are compared with, and whose techniques are switched off one by one.
@@ -70,11 +72,6 @@ struct Measurement {
 std::optional<Measurement> read_measurement(const std::filesystem::path& folder);
 /// The last event in the report.json of `folder`: when the run failed, the reason. Empty when there is none.
 std::optional<std::string> last_event(const std::filesystem::path& folder);
-
-/// Median and extremes of the known values.
-struct Spread {
-  double median = Measurement::kUnknown, min = Measurement::kUnknown, max = Measurement::kUnknown;
-};
 
 /// All runs of a variant on a source.
 struct AblationRow {

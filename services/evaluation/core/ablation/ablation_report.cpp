@@ -18,38 +18,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string number(double value, const char* format) {
-  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
-}
-
-std::string spread(const Spread& s, const char* format) {
-  const std::string median = number(s.median, format), min = number(s.min, format), max = number(s.max, format);
-  return min == max ? median : fmt::format("{} ({}..{})", median, min, max);
-}
-
-std::string aligned_table(const std::vector<std::vector<std::string>>& lines) {
-  std::vector<std::size_t> widths(lines.front().size(), 0);
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], line[i].size());
-  }
-  std::string text;
-  for (const auto& line : lines) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      text += i == 0 ? fmt::format("  {:<{}}", line[i], widths[i]) : fmt::format("  {:>{}}", line[i], widths[i]);
-    }
-    text += '\n';
-  }
-  return text;
-}
-
 std::string markdown_line(const std::vector<std::string>& cells) {
   std::string text = "|";
   for (const std::string& cell : cells) text += " " + cell + " |";
   return text + "\n";
-}
-
-Json spread_json(const Spread& s) {
-  return {{"median", number_or_null(s.median)}, {"min", number_or_null(s.min)}, {"max", number_or_null(s.max)}};
 }
 
 Json row_json(const AblationRow& row) {
@@ -175,14 +147,14 @@ std::vector<std::string> ablation_head() {
 std::vector<std::string> ablation_cells(const AblationRow& row) {
   if (row.failed == row.runs) return {row.variant.name, "failed", "-", "-", "-", "-", "-", "-", "-"};
   return {row.variant.name,
-          spread(row.ate_m, "{:.4f}"),
-          number(row.ratio, "{:.2f}"),
-          spread(row.rpe_m, "{:.4f}"),
-          spread(row.rpe_deg, "{:.3f}"),
-          spread(row.coverage, "{:.3f}"),
-          spread(row.precision, "{:.3f}"),
-          spread(row.recall, "{:.3f}"),
-          spread(row.filter_ms, "{:.1f}")};
+          spread_text(row.ate_m, "{:.4f}"),
+          number_text(row.ratio, "{:.2f}"),
+          spread_text(row.rpe_m, "{:.4f}"),
+          spread_text(row.rpe_deg, "{:.3f}"),
+          spread_text(row.coverage, "{:.3f}"),
+          spread_text(row.precision, "{:.3f}"),
+          spread_text(row.recall, "{:.3f}"),
+          spread_text(row.filter_ms, "{:.1f}")};
 }
 
 std::vector<std::string> ablation_notes(const Ablation& ablation, const std::vector<AblationRow>& rows) {
