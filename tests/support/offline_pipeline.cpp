@@ -151,6 +151,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
                                                         std::chrono::duration<double>(options.min_period_s));
     add_motion(slam, *frame);
     const slam::SlamOutput output = slam.process(*message);
+    ++report.states[msg::to_string(output.result.state)];
     front_end->listen(output);
     add_stage_times(output.result, report);
     report.keyframes = output.result.keyframes;
