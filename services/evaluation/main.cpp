@@ -7,6 +7,7 @@
 #include "common/service/command_line.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/evaluation/commands/ablate_command.hpp"
+#include "services/evaluation/commands/benchmark_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/detector/eval_detector_command.hpp"
@@ -19,6 +20,7 @@ struct Requests {
   eval::EvalOptions trajectory;
   eval::EvalDetectorOptions detector;
   eval::AblateOptions ablate;
+  eval::BenchmarkOptions benchmark;
   eval::ReportOptions report;
   eval::CompareOptions compare;
 };
@@ -34,6 +36,7 @@ int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("trajectory")) return eval::run_eval(requests.trajectory, std::cout, std::cerr);
   if (app.got_subcommand("detector")) return eval::run_eval_detector(requests.detector, std::cout, std::cerr);
   if (app.got_subcommand("ablate")) return eval::run_ablate(requests.ablate);
+  if (app.got_subcommand("benchmark")) return eval::run_benchmark(requests.benchmark);
   if (app.got_subcommand("report")) return report(requests.report);
   return eval::run_compare(requests.compare, std::cout, std::cerr);
 }
@@ -44,11 +47,12 @@ int main(int argc, char** argv) {
   const bool detects = argc > 1 && std::string_view(argv[1]) == "detector";
   if (detects) service::restart_with(detector::kAllowAllDevices, "1", argv);
   Requests requests;
-  CLI::App app{"Accuracy of trajectories and detectors, ablations, and the reports of runs", "rtd-eval"};
+  CLI::App app{"Accuracy of trajectories and detectors, ablations, benchmarks, and the reports of runs", "rtd-eval"};
   app.require_subcommand(1);
   eval::add_eval_command(app, requests.trajectory);
   eval::add_eval_detector_command(app, requests.detector);
   eval::add_ablate_command(app, requests.ablate);
+  eval::add_benchmark_command(app, requests.benchmark);
   eval::add_report_command(app, requests.report);
   eval::add_compare_command(app, requests.compare);
   return service::run_command(app, argc, argv, [&] { return dispatch(app, requests); });
