@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
+#include "services/evaluation/core/trajectory/relative_error.hpp"
 
 namespace rtd::eval {
 
@@ -98,10 +99,13 @@ struct RpeResult {
   Statistics translation_m, rotation_rad;  ///< count 0: no step fits
 };
 
-/// Relative pose error as TUM's evaluate_rpe.py with --fixed_delta: from every estimated pose to the one nearest to
+/// Relative pose errors as TUM's evaluate_rpe.py with --fixed_delta: from every estimated pose to the one nearest to
 /// `delta` later (frames and metres count along the estimate), compared with the ground-truth poses nearest in time.
 /// Steps that reach the last pose and steps without ground truth within twice its median interval are left out.
 /// docs/evaluation.md Eq. (6)-(8).
+std::vector<StepError> relative_errors(const Trajectory& estimate, const Trajectory& groundtruth,
+                                       const RpeOptions& options = {});
+/// Their statistics.
 RpeResult rpe(const Trajectory& estimate, const Trajectory& groundtruth, const RpeOptions& options = {});
 
 }  // namespace rtd::eval
