@@ -56,8 +56,9 @@ class MaskedOrb final : public FrontEnd {
 class Filtered final : public FrontEnd {
  public:
   /// Without `look`: no detector.
-  Filtered(const filter::FilterConfig& config, const Look& look, const DetectorOptions& detector)
-      : filter_(config, service::monotonic_ns), roll_(detector.roll) {
+  Filtered(const filter::FilterConfig& config, const Look& look, const DetectorOptions& detector,
+           const std::vector<ImageFault>& faults)
+      : filter_(config, service::monotonic_ns), roll_(detector.roll), faults_(faults) {
     if (!look) return;
     detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector);
   }
@@ -89,13 +90,14 @@ class Filtered final : public FrontEnd {
  private:
   std::vector<vision::Detection> timed(const Look& look, const camera::SourceFrame& frame) {
     const std::int64_t start_ns = service::monotonic_ns();
-    std::vector<vision::Detection> boxes = look(frame);
+    std::vector<vision::Detection> boxes = faults_.seen(frame, look(frame));
     detector_ms_ += ms_since(start_ns);
     return boxes;
   }
 
   filter::DynamicFilter filter_;
   std::shared_ptr<detector::CameraRoll> roll_;  ///< may be none
+  ImageFaults faults_;
   std::optional<DetectorPace> detector_;
   double detector_ms_ = 0;  ///< spent for the present frame
 };
@@ -121,7 +123,7 @@ std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options) {
   const bool looks = options.mode != "geometry" && options.detector.kind != "off";
   DetectorOptions paced = options.detector;
   if (paced.derotate) paced.roll = std::make_shared<detector::CameraRoll>(*paced.derotate);
-  return std::make_unique<Filtered>(config, looks ? make_look(paced) : Look{}, paced);
+  return std::make_unique<Filtered>(config, looks ? make_look(paced) : Look{}, paced, options.image_faults);
 }
 
 }  // namespace rtd::test_support

@@ -62,6 +62,17 @@ MeanNees mean_nees(const std::vector<slam::FrameResult>& published, const eval::
   return {measured.mean(), predicted.mean()};
 }
 
+eval::PublishedPose published_pose(const slam::FrameResult& result) {
+  return {result.stamp_ns, result.state, result.T_world_camera, result.covariance, result.map_id};
+}
+
+eval::Trajectory measured_poses(const std::vector<slam::FrameResult>& published) {
+  eval::Trajectory poses;
+  for (const slam::FrameResult& result : published)
+    if (msg::is_measured(result.state)) poses.push_back({result.stamp_ns, result.T_world_camera});
+  return poses;
+}
+
 void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
   const auto tracked = static_cast<double>(report.trajectory.size());
   report.coverage = report.frames == 0 ? 0.0 : tracked / static_cast<double>(report.frames);
@@ -72,6 +83,7 @@ void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& re
   const MeanNees nees = mean_nees(published, report.groundtruth);
   report.nees = nees.measured;
   report.predicted_nees = nees.predicted;
+  report.drift = eval::measure_drift(measured_poses(published), report.groundtruth);
   const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
   report.rpe_trans_rmse_m = rpe.translation_m.rmse;
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
@@ -129,6 +141,8 @@ OfflineReport run_offline(const OfflineOptions& options) {
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
   std::vector<slam::FrameResult> published;
+  std::vector<eval::PublishedPose> results;
+  ImageFaults image_faults(options.front_end.image_faults);
   const auto pass_over = [&source](std::size_t frames) {
     for (std::size_t i = 0; i < frames; ++i) source->next();
   };
@@ -136,8 +150,9 @@ OfflineReport run_offline(const OfflineOptions& options) {
   std::optional<std::int64_t> first_ns;
   auto next_frame = std::chrono::steady_clock::now();
   while (options.max_frames == 0 || report.frames < options.max_frames) {
-    const auto frame = source->next();
+    auto frame = source->next();
     if (!frame) break;
+    image_faults.apply(*frame);
     const FrontEndOutput front = front_end->process(*frame);
     if (options.on_features) options.on_features(*frame, front.features);
     if (!first_ns) first_ns = frame->image.stamp_ns;
@@ -157,6 +172,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
     report.keyframes = output.result.keyframes;
     report.landmarks = output.result.landmarks;
     ++report.frames;
+    results.push_back(published_pose(output.result));
     if (output.result.state == msg::TrackingState::kDoubtful) ++report.doubtful_frames;
     const bool predicted = slam.prior() != nullptr && output.result.state == msg::TrackingState::kPredicted;
     if (predicted) ++report.predicted_frames;
@@ -177,6 +193,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   report.groundtruth = source->groundtruth();
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
   evaluate(published, report);
+  report.integrity = eval::judge_integrity(results, report.groundtruth);
   return report;
 }
 

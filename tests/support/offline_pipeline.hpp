@@ -13,10 +13,13 @@
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/evaluation/core/integrity/drift.hpp"
+#include "services/evaluation/core/integrity/integrity.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "tests/support/image_faults.hpp"
 #include "tests/support/simulated_detector.hpp"
 
 namespace rtd::test_support {
@@ -44,6 +47,7 @@ struct FrontEndOptions {
   std::string mode = "off";
   DetectorOptions detector;
   std::vector<std::string> filter_settings;  ///< "filter.KEY=VALUE", as on rtd-filter's command line
+  std::vector<ImageFault> image_faults;      ///< the detector sees their effect; whoever makes the frames applies them
 };
 /// Throws service::ConfigError for other names and settings, std::invalid_argument when a model is missing.
 std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options);
@@ -81,6 +85,8 @@ struct OfflineReport {
   double online_ate_rmse_m = 0;  ///< of the poses as they were published
   double nees = 0;  ///< mean of the published poses and covariances, 6 when they are true; NaN without ground truth
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
+  eval::Integrity integrity;                          ///< of all poses as they were published
+  eval::Drift drift;                                  ///< of the measured ones in the first map
   double coverage = 0;                                ///< share of the frames that `trajectory` has
   std::size_t predicted_frames = 0;                   ///< in the trajectory by IMU or wheels
   double predicted_nees = 0;  ///< mean of those as they were published, 6 when their covariances are true

@@ -12,6 +12,7 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/word_list.hpp"
 #include "common/service/config.hpp"
+#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/config.hpp"
 #include "tests/support/offline_pipeline.hpp"
@@ -39,6 +40,9 @@ void print(const rtd::test_support::OfflineReport& report) {
   if (report.predicted_frames > 0) {
     std::printf("predicted by IMU or wheels: %zu frames, NEES %.1f\n", report.predicted_frames, report.predicted_nees);
   }
+  for (const auto& figures :
+       {rtd::eval::drift_figures(report.drift, std::nullopt), rtd::eval::integrity_figures(report.integrity)})
+    for (const auto& [name, value] : figures) std::printf("%-22s %s\n", name.c_str(), value.c_str());
   if (report.removal.removed_rightly + report.removal.kept_wrongly > 0) {
     std::printf("removed features after 1 s: precision %.3f  recall %.3f\n", report.removal.precision(),
                 report.removal.recall());
@@ -72,7 +76,10 @@ void print_json(const rtd::test_support::OfflineReport& report) {
   };
   double loop_error_m = 0;  // of the worst one
   for (const auto& loop : report.loops) loop_error_m = std::max(loop_error_m, loop.error_m);
+  nlohmann::ordered_json integrity = rtd::eval::to_json(report.integrity);
+  integrity["drift"] = rtd::eval::to_json(report.drift);
   const nlohmann::json line = {{"frames", report.frames},
+                               {"integrity", integrity},
                                {"loops", report.loops.size()},
                                {"loop_error_m", loop_error_m},
                                {"coverage", report.coverage},
@@ -140,6 +147,34 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       "gone from BEGIN:END, seconds after the first frame");
 }
 
+using rtd::test_support::ImageFault;
+
+/// "0.5:2:3" -> 0.5 from second 2 to second 3; of darkness "2:3".
+ImageFault parse_fault(ImageFault::Kind kind, const std::string& text) {
+  ImageFault fault{kind};
+  const bool dark = kind == ImageFault::Kind::kDark;
+  const std::string whole = dark ? "0:" + text : text;
+  char rest = 0;
+  if (std::sscanf(whole.c_str(), "%lf:%lf:%lf%c", &fault.amount, &fault.begin_s, &fault.end_s, &rest) == 3)
+    return fault;
+  throw CLI::ValidationError("'" + text + "' is not " + (dark ? "BEGIN:END" : "AMOUNT:BEGIN:END") + " in seconds");
+}
+
+void add_image_fault_options(CLI::App& app, std::vector<ImageFault>& faults) {
+  const auto add = [&](const char* name, ImageFault::Kind kind, const char* help) {
+    app.add_option_function<std::vector<std::string>>(
+        name,
+        [&faults, kind](const std::vector<std::string>& texts) {
+          for (const std::string& text : texts) faults.push_back(parse_fault(kind, text));
+        },
+        help);
+  };
+  add("--occlude", ImageFault::Kind::kOcclude, "SHARE:BEGIN:END: something textured covers this share of the view");
+  add("--person", ImageFault::Kind::kPerson, "the same, and the detector takes it for a person");
+  add("--dark", ImageFault::Kind::kDark, "BEGIN:END: the light is off, seconds after the first frame");
+  add("--blur", ImageFault::Kind::kBlur, "PX:BEGIN:END: colour is smeared along its rows");
+}
+
 void add_slam_options(CLI::App& app, rtd::slam::SlamConfig& slam) {
   app.add_option("--disparity", slam.sensor.disparity_px_m);
   app.add_option("--close-depth", slam.sensor.close_depth_m);
@@ -191,6 +226,7 @@ int main(int argc, char** argv) {
   app.add_option("--mode", options.front_end.mode, "true-mask, " + rtd::msg::word_list(rtd::msg::filter_mode_names()));
   app.add_option("--set", settings, "filter.KEY=VALUE or slam.KEY=VALUE, e.g. filter.techniques.belief=false");
   add_detector_options(app, options.front_end.detector);
+  add_image_fault_options(app, options.front_end.image_faults);
   add_slam_options(app, slam_settings.core);
   app.add_option("--first-frame", options.first_frame, "pass over so many frames of the source");
   app.add_option("--every", options.frame_step, "use only every n-th frame, as from a slower camera")
