@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 
 static_assert(std::endian::native == std::endian::little, "features are stored in little-endian order");
 constexpr int kFormat = 1;
-constexpr std::size_t kFeatureBytes = 9;  // u and v as float32, one byte for "removed"
+constexpr std::string_view kAddedColumn = "map_id";  // earlier versions did not write it: zeros
+constexpr std::size_t kFeatureBytes = 9;             // u and v as float32, one byte for "removed"
 
 /// JSON has no NaN and no infinity: both become null, which is read as NaN.
 template <typename T>
@@ -63,8 +64,11 @@ Json frames_json(const std::vector<FrameRecord>& frames) {
 
 std::vector<FrameRecord> read_frames(const Json& table) {
   std::vector<FrameRecord> frames(table.at("seq").size());
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    for_each_column(frames[i], [&](const char* name, auto& value) { from_value(table.at(name).at(i), value); });
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for_each_column(frames[i], [&](const char* name, auto& value) {
+      if (table.contains(name) || name != kAddedColumn) from_value(table.at(name).at(i), value);
+    });
+  }
   return frames;
 }
 

@@ -39,6 +39,7 @@ void for_each_column(auto& frame, const auto& visit) {
   visit("features_removed", tracking.features_removed);
   visit("keyframes", tracking.keyframes);
   visit("landmarks", tracking.landmarks);
+  visit("map_id", tracking.map_id);
   visit("slam_stage_ms", tracking.stage_ms);
   visit("filter_stage_ms", frame.filter_stage_ms);
 }
@@ -110,7 +111,7 @@ class RunFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Of a frame, only what the report needs is written: no covariance and no map ids. Throws RunFileError.
+/// Of a frame, only what the report needs is written: no covariance. Throws RunFileError.
 void write_run_json(const RunRecord& record, const std::filesystem::path& file);
 RunRecord read_run_json(const std::filesystem::path& file);
 

@@ -128,7 +128,7 @@ def cases(options, folders: list) -> list:
     """(names, command) of each run: plain ones, and as many provoked ones."""
     turns = itertools.cycle(FAULTS)
     tasks = []
-    for folder, start in itertools.product(folders, options.starts):
+    for start, folder in itertools.product(options.starts, folders):
         for fault in (PLAIN, next(turns)):
             names = {"sequence": folder.name, "start": start, "fault": fault, "settings": " ".join(options.set),
                      "mode": options.mode}

@@ -66,13 +66,6 @@ eval::PublishedPose published_pose(const slam::FrameResult& result) {
   return {result.stamp_ns, result.state, result.T_world_camera, result.covariance, result.map_id};
 }
 
-eval::Trajectory measured_poses(const std::vector<slam::FrameResult>& published) {
-  eval::Trajectory poses;
-  for (const slam::FrameResult& result : published)
-    if (msg::is_measured(result.state)) poses.push_back({result.stamp_ns, result.T_world_camera});
-  return poses;
-}
-
 void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
   const auto tracked = static_cast<double>(report.trajectory.size());
   report.coverage = report.frames == 0 ? 0.0 : tracked / static_cast<double>(report.frames);
@@ -83,7 +76,6 @@ void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& re
   const MeanNees nees = mean_nees(published, report.groundtruth);
   report.nees = nees.measured;
   report.predicted_nees = nees.predicted;
-  report.drift = eval::measure_drift(measured_poses(published), report.groundtruth);
   const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
   report.rpe_trans_rmse_m = rpe.translation_m.rmse;
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
@@ -194,6 +186,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
   evaluate(published, report);
   report.integrity = eval::judge_integrity(results, report.groundtruth);
+  report.drift = eval::measure_drift(eval::measured_poses(results), report.groundtruth);
   return report;
 }
 

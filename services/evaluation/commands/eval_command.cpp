@@ -16,6 +16,7 @@
 #include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
+#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
@@ -65,8 +66,15 @@ std::string alignment_rows(const Alignment& alignment) {
   return text;
 }
 
+std::string figure_rows(const std::vector<NamedFigure>& figures) {
+  std::string text;
+  for (const auto& [name, value] : figures) text += fmt::format("{:<22} {}\n", name, value);
+  return text;
+}
+
 struct Inputs {
   Trajectory estimate, groundtruth;
+  std::vector<PublishedPose> published;  ///< of the estimate, where states are known
   std::optional<std::vector<std::int64_t>> frames_ns;
   std::vector<std::string> damages;
 };
@@ -77,7 +85,12 @@ Inputs read_inputs(const EvalOptions& options) {
   const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
   if (given && !estimate.took_stamps && !groundtruth.took_stamps)
     throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
-  Inputs inputs{std::move(estimate.poses), std::move(groundtruth.poses), {}, std::move(estimate.damages)};
+  Inputs inputs{std::move(estimate.poses),
+                std::move(groundtruth.poses),
+                std::move(estimate.published),
+                {},
+                std::move(estimate.damages)};
+  for (PublishedPose& pose : inputs.published) pose.stamp_ns += std::llround(options.offset_s * 1e9);
   std::ranges::move(groundtruth.damages, std::back_inserter(inputs.damages));
   if (!options.frames.empty()) inputs.frames_ns = read_frame_stamps(options.frames);
   return inputs;
@@ -116,7 +129,22 @@ std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
                      "min", "max", "", "pairs") +
          row(options.scale ? "ATE (Sim(3))" : "ATE (SE(3))", e.ate.error_m, 1, "m") +
          rpe_rows("RPE per second", e.rpe_per_second) + rpe_rows("RPE per frame", e.rpe_per_frame) +
-         rpe_rows("RPE per metre", e.rpe_per_metre);
+         rpe_rows("RPE per metre", e.rpe_per_metre) + "\n" + figure_rows(drift_figures(e.drift, options.scene_depth_m));
+}
+
+/// Where the states of the poses are known.
+std::optional<Integrity> integrity_of(const Inputs& inputs) {
+  if (inputs.published.empty()) return std::nullopt;
+  return judge_integrity(inputs.published, inputs.groundtruth);
+}
+
+std::string text_of(const Evaluation& evaluation, const std::optional<Integrity>& integrity,
+                    const EvalOptions& options) {
+  if (!options.json)
+    return evaluation_table(evaluation, options) + (integrity ? figure_rows(integrity_figures(*integrity)) : "");
+  nlohmann::ordered_json json = to_json(evaluation);
+  json["integrity"] = integrity ? to_json(*integrity) : nlohmann::ordered_json(nullptr);
+  return service::json_text(json) + "\n";
 }
 
 std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groundtruth, const EvalOptions& options) {
@@ -155,6 +183,8 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command->add_option("--offset", options.offset_s, "Added to the stamps of the estimate [s]")->capture_default_str();
+  command->add_option("--scene-depth", options.scene_depth_m, "How far away the background is, to judge the drift [m]")
+      ->check(CLI::PositiveNumber);
   command->add_option("--frames", options.frames, "Frame list (rgb.txt, associations.txt): coverage counts its frames");
   return command;
 }
@@ -169,7 +199,7 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
       return service::kRunFailed;
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
-    out << (options.json ? service::json_text(to_json(evaluation)) + "\n" : evaluation_table(evaluation, options));
+    out << text_of(evaluation, integrity_of(inputs), options);
     for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
     return inputs.damages.empty() ? service::kOk : service::kPartialLoss;
   });

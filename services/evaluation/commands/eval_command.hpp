@@ -3,6 +3,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 #include "services/evaluation/core/trajectory/pose_file.hpp"
@@ -21,7 +22,8 @@ struct EvalOptions {
   std::string plot;    ///< write this SVG; empty = none
   double max_difference_s = 0.02;
   double offset_s = 0;
-  bool scale = false;  ///< Sim(3) instead of SE(3)
+  std::optional<double> scene_depth_m;  ///< of the background
+  bool scale = false;                   ///< Sim(3) instead of SE(3)
   bool json = false;
 };
 

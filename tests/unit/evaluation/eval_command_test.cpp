@@ -87,6 +87,26 @@ TEST_F(EvalCommand, scale_option_aligns_with_a_similarity) {
   EXPECT_NEAR(similar["alignment"]["scale"].get<double>(), 2.0, 1e-6);
 }
 
+TEST_F(EvalCommand, prints_drift_and_what_a_constant_quotient_means) {
+  Trajectory truth = winding_path(60, 0.1), wrong;
+  for (StampedPose& pose : truth) {
+    pose.T_world_body.setIdentity();
+    const double way_m = 0.02 * static_cast<double>(wrong.size());
+    wrong.push_back({pose.stamp_ns, Eigen::Translation3d(way_m, 0, 0) *
+                                        Eigen::AngleAxisd(-std::atan2(way_m, 3), Eigen::Vector3d::UnitY())});
+  }
+  const std::string rest = folder_.write("rest.txt", tum_text(truth));
+  const std::string estimate = folder_.write("wrong.txt", tum_text(wrong));
+  EXPECT_THAT(run({estimate, rest}).out,
+              AllOf(HasSubstr("drift quotient"), HasSubstr("m/rad"), HasSubstr("follows something nearer than that"),
+                    Not(HasSubstr("scene's depth")), Not(HasSubstr("ok, but wrong"))));
+  EXPECT_THAT(run({estimate, rest, "--scene-depth", "3"}).out, HasSubstr("the scene's depth is 3.0 m, near that"));
+  const auto json = nlohmann::json::parse(run({estimate, rest, "--json"}).out);
+  EXPECT_NEAR(json["drift"]["quotient_m_per_rad"].get<double>(), 3, 0.3);
+  EXPECT_EQ(json["drift"]["nearly_constant"], true);
+  EXPECT_TRUE(json["integrity"].is_null());
+}
+
 TEST_F(EvalCommand, json_has_every_measure) {
   const Outcome outcome = run({estimate_, truth_, "--json"});
   const auto json = nlohmann::json::parse(outcome.out);

@@ -7,6 +7,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/msg/ros.hpp"
+#include "common/msg/tracking.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
@@ -238,6 +239,39 @@ TEST_F(PoseFileTest, an_mcap_file_gives_poses_with_covariance) {
   writer.close();
   const TemporaryFile file("x.mcap", {reinterpret_cast<const char*>(sink.bytes().data()), sink.bytes().size()});
   EXPECT_EQ(read_pose_file(file.path().string(), {}).poses.at(0).T_world_body.translation().x(), 5);
+}
+
+/// A recording of the results of slam: three frames, the last one lost.
+std::string recorded_results() {
+  io::MemorySink sink;
+  mcap::Writer writer(sink, {});
+  const auto schema = writer.add(mcap::Schema{0, "rtd_msgs::TrackingResult", "omgidl", ""});
+  const auto channel = writer.add(mcap::Channel{0, schema, "rtd/tracking", "cdr", {}});
+  for (const std::int64_t stamp_ns : {2, 1, 2, 3}) {
+    msg::TrackingResult result{};
+    result.stamp_ns = stamp_ns * kSecond;
+    result.state = stamp_ns == 3 ? msg::TrackingState::kLost : msg::TrackingState::kDoubtful;
+    result.T_world_camera = {{static_cast<double>(stamp_ns), 0, 0}, {0, 0, 0, 1}};
+    const auto cdr = ros::encode<ros::Wire::kCdr>(result);
+    writer.write(mcap::Message{channel, 0, 9, 9, std::as_bytes(std::span(cdr))});
+  }
+  writer.close();
+  return {reinterpret_cast<const char*>(sink.bytes().data()), sink.bytes().size()};
+}
+
+TEST_F(PoseFileTest, results_of_slam_come_with_their_states) {
+  const TemporaryFile file("x.mcap", recorded_results());
+  const PoseFile read = read_pose_file(file.path().string() + "?topic=rtd/tracking", {});
+  ASSERT_THAT(read.published, SizeIs(3));
+  EXPECT_EQ(read.published[0].stamp_ns, kSecond);
+  EXPECT_EQ(read.published[1].state, msg::TrackingState::kDoubtful);
+  EXPECT_EQ(read.published[2].state, msg::TrackingState::kLost);
+  ASSERT_THAT(read.poses, SizeIs(2));
+  EXPECT_EQ(read.poses[1].T_world_body.translation().x(), 2);
+}
+
+TEST_F(PoseFileTest, other_files_have_no_states) {
+  EXPECT_THAT(read_pose_file(folder_.write("data.csv", kStates), {}).published, IsEmpty());
 }
 
 TEST_F(PoseFileTest, a_file_that_only_ends_as_a_recording_is_refused) {

@@ -115,10 +115,26 @@ TEST_F(Report, final_and_published_trajectories_are_judged_apart) {
   EXPECT_EQ(report["evaluation"]["ate_m"]["count"], 100);
 }
 
+TEST_F(Report, integrity_is_that_of_the_published_poses) {
+  for (std::size_t i = 50; i < record_.frames.size(); ++i)
+    record_.frames[i].tracking.T_world_camera.translation_m[2] += 0.2;
+  for (std::size_t i = 52; i < 60; ++i) record_.frames[i].tracking.state = msg::TrackingState::kDoubtful;
+  const auto integrity = json()["integrity"];
+  EXPECT_EQ(integrity["frames"], 99);
+  EXPECT_EQ(integrity["dangerous"], 2);  // until the doubt, which lasts until the step is a second ago
+  EXPECT_NEAR(integrity["delay_s_max"].get<double>(), 0.2, 1e-9);
+  EXPECT_EQ(integrity["states"]["lost"], 5);
+  EXPECT_TRUE(integrity["nees_ok"].is_null() || std::isnan(integrity["nees_ok"].get<double>()));
+  EXPECT_TRUE(integrity["drift"].contains("quotient_m_per_rad"));
+  EXPECT_THAT(page(), AllOf(HasSubstr("ok, but wrong"), HasSubstr("2 of 99 frames"), HasSubstr("needless doubt"),
+                            HasSubstr("drift quotient"), Not(HasSubstr("nan"))));
+}
+
 TEST_F(Report, without_ground_truth_errors_are_null_and_said_to_be_unknown) {
   record_.groundtruth_path.clear();
   const auto report = json();
-  for (const char* key : {"ate_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_rmse_deg", "evaluation"}) {
+  for (const char* key :
+       {"ate_rmse_m", "ate_online_rmse_m", "rpe_trans_rmse_m", "rpe_rot_rmse_deg", "evaluation", "integrity"}) {
     EXPECT_TRUE(report.contains(key) && report[key].is_null()) << key;
   }
   EXPECT_THAT(report["notes"], Contains("no ground truth"));

@@ -8,23 +8,14 @@
 #include <optional>
 #include <vector>
 
-#include "common/geometry/se3.hpp"
 #include "common/msg/tracking.hpp"
+#include "services/evaluation/core/integrity/published_pose.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
 
 inline constexpr std::size_t kTrackingStates =
     static_cast<std::size_t>(msg::last_value(msg::TypeOf<msg::TrackingState>{})) + 1;
-
-/// What was published of one frame, at the time: later corrections of the map do not count.
-struct PublishedPose {
-  std::int64_t stamp_ns = 0;
-  msg::TrackingState state = msg::TrackingState::kInitializing;
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< where msg::has_pose(state)
-  std::optional<geometry::Matrix6d> covariance;  ///< (x y z rx ry rz), m and rad, world frame; none: not known
-  std::uint32_t map_id = 0;                      ///< poses of different maps are not compared
-};
 
 /// What counts as an error: docs/integrity.md.
 struct IntegrityLimits {

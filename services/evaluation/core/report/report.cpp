@@ -12,6 +12,7 @@
 #include "common/geometry/ply.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
+#include "services/evaluation/core/integrity/integrity_text.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -126,6 +127,15 @@ Json quality_json(const RemovalQuality& quality) {
           {"kept_wrongly", quality.kept_wrongly}};
 }
 
+Json integrity_json(const RunSummary& summary) {
+  if (!summary.integrity) return nullptr;
+  Json integrity = to_json(*summary.integrity);
+  const Drift* drift = drift_of(summary);
+  integrity["drift"] = drift != nullptr ? to_json(*drift) : Json(nullptr);
+  integrity["scene_depth_m"] = summary.scene_depth_m ? Json(*summary.scene_depth_m) : Json(nullptr);
+  return integrity;
+}
+
 Json removal_json(const Run& run) {
   if (!run.removal) return nullptr;
   Json removal = quality_json(run.removal->all);
@@ -172,6 +182,8 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
                                     run.frames_dropped, lost_places(run)));
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
   text += row("ATE rmse", both_ates(summary));
+  if (const Drift* drift = drift_of(summary); drift != nullptr && drift->nearly_constant())
+    text += row("drift", explain(*drift, summary.scene_depth_m));
   if (run.removal) text += row("removed", removal_text(*run.removal));
   text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
@@ -229,6 +241,7 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["features"] = {{"kept_mean", number_or_null(summary.kept_mean)},
                         {"removed_mean", number_or_null(summary.removed_mean)}};
   report["removal"] = removal_json(run);
+  report["integrity"] = integrity_json(summary);
   report["map"] = {{"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}};
   report["static_map"] = run.static_map_path.empty()
                              ? Json(nullptr)

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/report_parts.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
@@ -129,6 +130,18 @@ std::string error_section(const RunSummary& summary, const RunTime& time) {
                        svg.str());
 }
 
+std::string integrity_section(const RunSummary& summary) {
+  html::Table table{{"figure", "value"}, {}};
+  const auto add = [&table](const std::vector<NamedFigure>& figures) {
+    for (const auto& [name, value] : figures) table.rows.push_back({name, value});
+  };
+  if (summary.integrity) add(integrity_figures(*summary.integrity));
+  if (const Drift* drift = drift_of(summary)) add(drift_figures(*drift, summary.scene_depth_m));
+  if (table.rows.empty()) return "";
+  return html::section("Integrity", "How far the state of a pose could be trusted when it was published.",
+                       html::table(table));
+}
+
 std::string removal_note(const Run& run) {
   if (!run.removal) return "";
   const auto words = [](const RemovalQuality& quality) {
@@ -229,9 +242,10 @@ std::string report_html(const Run& run, const RunSummary& summary) {
   const std::string events = events_section(run, summary);
   return html::page("RTD-SLAM run report", run.source,
                     header_badges(run, summary) + summary_cards(run, summary) + (poor ? events : "") +
-                        trajectory_section(summary, time) + error_section(summary, time) + samples_section(run) +
-                        features_section(run, summary) + latency_section(run, summary) + stage_section(summary) +
-                        processes_section(run) + losses_section(run, summary) + (poor ? "" : events));
+                        trajectory_section(summary, time) + error_section(summary, time) + integrity_section(summary) +
+                        samples_section(run) + features_section(run, summary) + latency_section(run, summary) +
+                        stage_section(summary) + processes_section(run) + losses_section(run, summary) +
+                        (poor ? "" : events));
 }
 
 }  // namespace rtd::eval

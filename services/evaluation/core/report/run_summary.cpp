@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "common/msg/transform_eigen.hpp"
+#include "services/evaluation/core/report/scene_depth.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -106,7 +107,19 @@ std::optional<Evaluation> evaluate_or_note(const std::string& what, const Trajec
   return evaluation;
 }
 
+std::optional<Integrity> integrity_of(const Run& run, const RunSummary& summary) {
+  if (run.frames.empty() || !summary.online_trajectory) return std::nullopt;
+  std::vector<PublishedPose> published;
+  for (const run_record::FrameRecord& frame : run.frames) published.push_back(published_pose(frame.tracking));
+  return judge_integrity(published, summary.groundtruth);
+}
+
 }  // namespace
+
+const Drift* drift_of(const RunSummary& summary) {
+  if (summary.online_trajectory) return &summary.online_trajectory->drift;
+  return summary.final_trajectory ? &summary.final_trajectory->drift : nullptr;
+}
 
 std::optional<double> latency_ms(const run_record::FrameRecord& frame) {
   const auto& tracking = frame.tracking;
@@ -154,6 +167,9 @@ RunSummary summarize_run(const Run& run) {
   summary.final_trajectory = evaluate_or_note("trajectory", summary.estimate, summary.groundtruth, summary.notes);
   summary.online_trajectory =
       evaluate_or_note("published poses", online_trajectory(run), summary.groundtruth, summary.notes);
+  summary.integrity = integrity_of(run, summary);
+  const Drift* drift = drift_of(summary);
+  if (drift != nullptr && drift->nearly_constant()) summary.scene_depth_m = scene_depth_m(run.source);
   return summary;
 }
 

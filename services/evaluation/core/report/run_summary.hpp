@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/run_record/run_record.hpp"
+#include "services/evaluation/core/integrity/integrity.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
@@ -60,6 +61,8 @@ struct RunSummary {
   Trajectory estimate, groundtruth;             ///< final trajectory and ground truth; empty when there is none
   std::optional<Evaluation> final_trajectory;   ///< trajectory.txt against ground truth
   std::optional<Evaluation> online_trajectory;  ///< poses as they were published, frame by frame
+  std::optional<Integrity> integrity;           ///< of the poses as they were published, with their states
+  std::optional<double> scene_depth_m;          ///< only where the drift is nearly constant and the source still there
   std::vector<std::string> notes;               ///< what could not be computed, and why
 };
 
@@ -68,6 +71,9 @@ RunSummary summarize_run(const Run& run);
 
 /// The poses of the tracked frames as published, in order.
 Trajectory online_trajectory(const Run& run);
+
+/// Drift of the poses as published, else of the final ones; null without ground truth.
+const Drift* drift_of(const RunSummary& summary);
 
 /// Camera to pose, ms; nothing when the frame has no pose or was not timed.
 std::optional<double> latency_ms(const run_record::FrameRecord& frame);

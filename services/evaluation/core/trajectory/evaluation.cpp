@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "services/evaluation/core/integrity/integrity_text.hpp"
+
 namespace rtd::eval {
 namespace {
 
@@ -107,6 +109,8 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, c
   evaluation.rpe_per_second = rpe_per(RpeUnit::kSeconds);
   evaluation.rpe_per_frame = rpe_per(RpeUnit::kFrames);
   evaluation.rpe_per_metre = rpe_per(RpeUnit::kMetres);
+  evaluation.drift = measure_drift(estimate, groundtruth,
+                                   {.offset_s = options.association.offset_s, .scale = evaluation.ate.alignment.scale});
   evaluation.coverage = measure_coverage(estimate, groundtruth, options, frames_ns);
   return evaluation;
 }
@@ -126,6 +130,7 @@ Json to_json(const Evaluation& e) {
            {{"per_second", rpe_json(e.rpe_per_second)},
             {"per_frame", rpe_json(e.rpe_per_frame)},
             {"per_metre", rpe_json(e.rpe_per_metre)}}},
+          {"drift", to_json(e.drift)},
           {"coverage", coverage_json(e.coverage)}};
 }
 

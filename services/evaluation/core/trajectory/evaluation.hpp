@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "services/evaluation/core/integrity/drift.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
@@ -45,11 +46,13 @@ struct Evaluation {
   std::size_t estimate_poses = 0, groundtruth_poses = 0;
   AteResult ate;
   RpeResult rpe_per_second, rpe_per_frame, rpe_per_metre;
+  Drift drift;
   Coverage coverage;
 };
 
-/// ATE, RPE in the three units and coverage. With a similarity alignment its scale also applies to the RPE.
-/// `frames_ns`: stamps of all frames of the run, in order; without them coverage refers to the ground truth's span.
+/// ATE, RPE in the three units, drift and coverage. With a similarity alignment its scale also applies to RPE and
+/// drift. `frames_ns`: stamps of all frames of the run, in order; without them coverage refers to the ground truth's
+/// span.
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, const EvaluationOptions& options = {},
                     const std::optional<std::vector<std::int64_t>>& frames_ns = std::nullopt);
 

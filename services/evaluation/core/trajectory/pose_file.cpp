@@ -21,6 +21,7 @@
 #include "common/recordings/open.hpp"
 #include "common/recordings/parts.hpp"
 #include "services/evaluation/core/trajectory/recorded_poses.hpp"
+#include "services/evaluation/core/trajectory/recorded_results.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -239,10 +240,18 @@ PoseFile read_text_file(const fs::path& file, const MissingStamps& stamps) {
   const std::string name = file.string();
   const std::optional<std::string> text = fs::is_regular_file(file) ? io::read_text(file) : std::nullopt;
   const PoseFormat format = text ? format_of(*text) : PoseFormat::kTum;
-  if (format == PoseFormat::kEuroc) return {read_euroc(*text, name), false, {}};
+  if (format == PoseFormat::kEuroc) return {read_euroc(*text, name), false, {}, {}};
   if (format == PoseFormat::kKitti)
-    return {read_kitti(*text, name, stamps_for(name, count_kitti(*text), stamps)), true, {}};
-  return {geometry::read_tum_trajectory(file), false, {}};  // says what is wrong with a file that cannot be read
+    return {read_kitti(*text, name, stamps_for(name, count_kitti(*text), stamps)), true, {}, {}};
+  return {geometry::read_tum_trajectory(file), false, {}, {}};  // says what is wrong with a file that cannot be read
+}
+
+PoseFile read_results_file(recordings::Reader& recording, const std::string& topic) {
+  RecordedResults recorded = read_recorded_results(recording, topic);
+  PoseFile file{measured_poses(recorded.published), false, std::move(recorded.damages), {}};
+  if (file.poses.empty()) throw TrajectoryError(recording.name() + ": topic " + topic + " has no measured pose");
+  file.published = std::move(recorded.published);
+  return file;
 }
 
 }  // namespace
@@ -250,8 +259,10 @@ PoseFile read_text_file(const fs::path& file, const MissingStamps& stamps) {
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps) {
   const PoseArgument wanted = parse(argument);
   if (fs::exists(wanted.file) && is_recording(wanted.file)) {
-    RecordedPoses recorded = read_recorded_poses(*recordings::open_reader(wanted.file), wanted.choice);
-    return {std::move(recorded.poses), false, std::move(recorded.damages)};
+    const auto reader = recordings::open_reader(wanted.file);
+    if (const auto results = topic_of_results(*reader, wanted.choice)) return read_results_file(*reader, *results);
+    RecordedPoses recorded = read_recorded_poses(*reader, wanted.choice);
+    return {std::move(recorded.poses), false, std::move(recorded.damages), {}};
   }
   if (wanted.chosen && fs::exists(wanted.file))
     throw TrajectoryError(argument + ": topic and child are for recordings (bag, MCAP, .db3), the file is none");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
+#include "services/evaluation/core/integrity/published_pose.hpp"
 
 namespace rtd::eval {
 
@@ -18,8 +19,9 @@ struct MissingStamps {
 /// A trajectory of a file.
 struct PoseFile {
   geometry::Trajectory poses;
-  bool took_stamps = false;          ///< from MissingStamps
-  std::vector<std::string> damages;  ///< of a recording, one line each
+  bool took_stamps = false;              ///< from MissingStamps
+  std::vector<std::string> damages;      ///< of a recording, one line each
+  std::vector<PublishedPose> published;  ///< with states and covariances; only of results of slam (rtd/tracking)
 };
 
 /// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3),
