@@ -43,7 +43,7 @@ msg::TrackingResult make_result(const FrameResult& result) {
   message.stamp_ns = result.stamp_ns;
   message.T_world_camera = msg::to_message(result.T_world_camera);
   constexpr double kUnknown = 1e6;  // m2 and rad2: receivers take no message with numbers that are none
-  const bool known = result.covariance.allFinite();
+  const bool known = msg::has_pose(result.state) && result.covariance.allFinite();
   Eigen::Map<RowMajor6d>(message.covariance.data()) =
       known ? RowMajor6d(result.covariance) : RowMajor6d(kUnknown * RowMajor6d::Identity());
   message.event_count = result.event_count;
@@ -124,8 +124,8 @@ msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t st
   return msg::make_cloud(slots, "intensity", stamp_ns, map_frame);
 }
 
-msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,
-                                      const std::string& trouble, std::int64_t stamp_ns) {
+msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const PoseTrust& trust,
+                                      const SlamCounters& counters, const std::string& trouble, std::int64_t stamp_ns) {
   constexpr std::uint8_t kOk = 0, kWarn = 1, kError = 2;
   msg::DiagnosticStatus status;
   status.name = "rtd-slam: tracking";
@@ -133,6 +133,12 @@ msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const S
   status.message = trouble.empty() ? to_string(result.state) : trouble;
   status.values = {{"state", to_string(result.state)},
                    {"inliers", std::to_string(result.inliers)},
+                   {"view", to_string(trust.view)},
+                   {"agreement", text(trust.agreement)},
+                   {"view_removed", text(trust.view_removed)},
+                   {"since_ok_s", text(trust.since_ok_s)},
+                   {"position_sigma_m", std::to_string(trust.position_sigma_m)},
+                   {"rotation_sigma_deg", std::to_string(trust.rotation_sigma_deg)},
                    {"keyframes", std::to_string(result.keyframes)},
                    {"landmarks", std::to_string(result.landmarks)},
                    {"map", std::to_string(result.map_id)},

@@ -11,6 +11,7 @@
 #include "common/msg/ros.hpp"
 #include "common/msg/tracking.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "services/slam/pose_trust.hpp"
 
 namespace rtd::slam {
 
@@ -19,7 +20,8 @@ struct FrameNames {
   std::string map, odom, camera;
 };
 
-/// The result for our own services; the caller fills in published_ns and finished_ns.
+/// The result for our own services; the caller fills in published_ns and finished_ns. Without a pose, or where it is
+/// not known, the covariance is huge.
 msg::TrackingResult make_result(const FrameResult& result);
 /// One event for each change, in their order.
 std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output);
@@ -50,7 +52,7 @@ struct SlamCounters {
                 unusable_frames = 0, source_restarts = 0, loops = 0;
 };
 /// One status "rtd-slam: tracking".
-msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const SlamCounters& counters,
-                                      const std::string& trouble, std::int64_t stamp_ns);
+msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const PoseTrust& trust,
+                                      const SlamCounters& counters, const std::string& trouble, std::int64_t stamp_ns);
 
 }  // namespace rtd::slam

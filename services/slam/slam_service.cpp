@@ -159,6 +159,7 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   last_result_.finished_ns = service::monotonic_ns();
   publisher_.publish(output, last_result_);
   trace(started_ns);
+  trust_ = trust_monitor_.add(last_result_, output.result.agreement);
   last_problem_ = output.problem;
   count(output);
   log(output, previous);
@@ -228,6 +229,11 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric(service::metric::kFrames, static_cast<double>(counters_.frames));
   heartbeat.set_metric(service::metric::kFramesTracked, static_cast<double>(counters_.tracked));
   heartbeat.set_metric(service::metric::kFramesDoubtful, static_cast<double>(counters_.doubtful));
+  heartbeat.set_metric(service::metric::kAgreement, trust_.agreement);
+  heartbeat.set_metric(service::metric::kViewRemoved, trust_.view_removed);
+  heartbeat.set_metric(service::metric::kSinceOkS, trust_.since_ok_s);
+  heartbeat.set_metric(service::metric::kPositionSigmaM, trust_.position_sigma_m);
+  heartbeat.set_metric(service::metric::kRotationSigmaDeg, trust_.rotation_sigma_deg);
   heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(counters_.dropped));
   heartbeat.set_metric(service::metric::kFeaturesInvalid, static_cast<double>(counters_.invalid_features));
   heartbeat.set_metric(service::metric::kKeyframes, output.result.keyframes);
@@ -319,7 +325,7 @@ void SlamService::watch_input(bool arrived) {
   input_gone_ = gone;
   if (now_ns - last_diagnostics_ns_ < kDiagnosticsPeriodNs) return;
   last_diagnostics_ns_ = now_ns;
-  publisher_.publish_diagnostics(make_diagnostics(last_result_, counters_, trouble(), last_result_.stamp_ns));
+  publisher_.publish_diagnostics(make_diagnostics(last_result_, trust_, counters_, trouble(), last_result_.stamp_ns));
 }
 
 /// Why the service does less than it should; empty when it does not.

@@ -76,6 +76,8 @@ class SlamService {
   SlamCounters counters_;
   MapKeeper map_keeper_;  ///< ends before the system that it reads
   msg::TrackingResult last_result_{};
+  TrustMonitor trust_monitor_;
+  PoseTrust trust_;  ///< of the last result
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
   bool readout_logged_ = false;

@@ -342,6 +342,7 @@ FrameResult SlamSystem::result_of(const msg::FeatureFrame& message, const FrameI
   result.event_count = event_count_;
   result.state = outcome.state;
   result.inliers = static_cast<std::uint32_t>(outcome.inliers);
+  if (msg::is_measured(outcome.state)) result.agreement = outcome.consistency;
   result.features_static = input.frame == nullptr ? 0 : static_cast<std::uint32_t>(input.frame->features.size());
   result.features_removed = input.removed;
   result.stage_ms = outcome.stage_ms;

@@ -29,6 +29,7 @@ struct FrameResult {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();        ///< (x y z rx ry rz), m and rad, world frame
   std::uint64_t event_count = 0;               ///< keyframe changes up to and including this frame
   std::uint32_t inliers = 0;                   ///< landmarks that the pose agrees with
+  double agreement = 0;                        ///< of a measured pose: Consistency::value()
   std::uint32_t features_static = 0;           ///< offered to tracking
   std::uint32_t features_removed = 0;          ///< left out because the filter judged them dynamic
   std::uint32_t keyframes = 0, landmarks = 0;  ///< size of the whole map

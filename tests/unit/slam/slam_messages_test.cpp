@@ -6,6 +6,7 @@
 
 #include <cstring>
 #include <fstream>
+#include <map>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
@@ -124,11 +125,32 @@ TEST(Cloud, lays_out_floats) {
 
 TEST(Diagnostics, level_follows_the_trouble) {
   auto result = result_at(0, Eigen::Isometry3d::Identity());
-  EXPECT_EQ(make_diagnostics(result, {}, "", 0).status[0].level, 0);
-  EXPECT_EQ(make_diagnostics(result, {}, "no features", 0).status[0].level, 1);
-  EXPECT_EQ(make_diagnostics(result, {}, "no features", 0).status[0].message, "no features");
+  EXPECT_EQ(make_diagnostics(result, {}, {}, "", 0).status[0].level, 0);
+  EXPECT_EQ(make_diagnostics(result, {}, {}, "no features", 0).status[0].level, 1);
+  EXPECT_EQ(make_diagnostics(result, {}, {}, "no features", 0).status[0].message, "no features");
   result.state = msg::TrackingState::kLost;
-  EXPECT_EQ(make_diagnostics(result, {}, "lost", 0).status[0].level, 2);
+  EXPECT_EQ(make_diagnostics(result, {}, {}, "lost", 0).status[0].level, 2);
+}
+
+TEST(Diagnostics, name_what_is_in_view_and_how_far_the_pose_is_known) {
+  const PoseTrust trust{View::kCrowded, 0.71, 0.64, 1.5, 0.0123, 0.9};
+  const msg::DiagnosticArray diagnostics =
+      make_diagnostics(result_at(0, Eigen::Isometry3d::Identity()), trust, {}, "", 0);
+  std::map<std::string, std::string> values;
+  for (const auto& [key, value] : diagnostics.status[0].values) values[key] = value;
+  EXPECT_EQ(values["view"], "crowded");
+  EXPECT_EQ(values["agreement"], "0.71");
+  EXPECT_EQ(values["since_ok_s"], "1.50");
+  EXPECT_EQ(values["position_sigma_m"], "0.012300");
+}
+
+TEST(TrackingResult, without_a_pose_has_a_huge_covariance) {
+  FrameResult lost;
+  lost.state = msg::TrackingState::kLost;
+  EXPECT_EQ(make_result(lost).covariance[0], 1e6);
+  EXPECT_EQ(make_result(lost).covariance[35], 1e6);
+  lost.state = msg::TrackingState::kOk;
+  EXPECT_EQ(make_result(lost).covariance[0], 0);
 }
 
 TEST(Config, refuses_unknown_keys_and_values_out_of_range) {
