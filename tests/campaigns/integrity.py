@@ -35,8 +35,8 @@ FAULTS = {
 PLAIN = "none"
 LOST = ("initializing", "recently lost", "lost", "relocalizing")
 COLUMNS = ["sequences", "fault", "runs", "frames", "ok, but wrong: of 1000", "of them returning", "needless doubt, %",
-           "doubt after, s at most", "never doubted", "NEES of ok, mean", "median", "ok, %", "doubtful, %",
-           "predicted, %", "without pose, %", "constant quotient"]
+           "doubt after, s at most", "never doubted", "NEES of ok, mean", "median run", "ok, %", "doubtful, %",
+           "predicted, %", "without pose, %", "covariance grows, doubtful", "predicted", "constant quotient"]
 
 
 def share(part: float, whole: float) -> float:
@@ -58,6 +58,8 @@ class Figures:
         self.nees = share(sum((one["nees_ok"] or 0) * one["nees_frames"] for one in found), total["nees_frames"])
         medians = sorted(one["nees_ok_median"] for one in found if one["nees_ok_median"] is not None)
         self.nees_median = medians[len(medians) // 2] if medians else 0.0
+        self.growth = {state: [sum(one["covariance_" + state][name] for one in found) for name in ("grown", "spans")]
+                       for state in ("doubtful", "predicted")}
         self.constant = sum(one["drift"]["nearly_constant"] for one in found)
         self.states = {name: share(100 * sum(one["states"][name] for one in found), total["frames"])
                        for name in (found[0]["states"] if found else {})}
@@ -68,7 +70,7 @@ class Figures:
                 f"{self.needless:.2f}", f"{self.delay_s:.2f}", str(self.unnoticed), f"{self.nees:.1f}",
                 f"{self.nees_median:.1f}", *(f"{self.states.get(name, 0):.1f}"
                                              for name in ("ok", "doubtful", "predicted")),
-                f"{without:.1f}", str(self.constant)]
+                f"{without:.1f}", *(f"{grown} of {spans}" for grown, spans in self.growth.values()), str(self.constant)]
 
 
 def kind_of(result: dict) -> str:
