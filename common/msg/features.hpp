@@ -30,6 +30,7 @@ enum FeatureFlag : std::uint8_t {
   kFeatureInLowMask = 1U << 3,       ///< inside the mask of a low-motion object (tv, refrigerator)
   kFeatureGeometryMoving = 1U << 4,  ///< the multi-view depth check found motion here
   kFeatureGeometryStatic = 1U << 5,  ///< the multi-view depth check found this point where it expected it
+  kFeatureInQuestion = 1U << 6,      ///< it is too early to say whether its surface moves: SLAM may map it, no more
 };
 
 /// One ORB feature with what is known about its motion.

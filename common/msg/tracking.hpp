@@ -51,23 +51,24 @@ enum class TrackingState : std::uint32_t {
   kRelocalizing = 4,  ///< a place was recognised; its pose is published once the next frames agree
   kPredicted = 5,     ///< nothing static in view: the last motion continues for a moment, without measurement
   kDoubtful = 6,      ///< measured, but much of what is seen contradicts the pose: something may take it along
+  kOdometry = 7,      ///< measured from frame to frame: the map is not recognised, so errors add up
 };
 
 constexpr TrackingState last_value(TypeOf<TrackingState>) {
-  return TrackingState::kDoubtful;
+  return TrackingState::kOdometry;
 }
 
 /// For logs, diagnostics and the live line.
 constexpr const char* to_string(TrackingState state) {
   constexpr const char* kNames[] = {"initializing", "ok",        "recently lost", "lost",
-                                    "relocalizing", "predicted", "doubtful"};
+                                    "relocalizing", "predicted", "doubtful",      "odometry"};
   const auto place = static_cast<std::size_t>(state);
   return place < std::size(kNames) ? kNames[place] : "unknown";
 }
 
 /// Whether the pose of a result of this state was measured in its frame.
 constexpr bool is_measured(TrackingState state) {
-  return state == TrackingState::kOk || state == TrackingState::kDoubtful;
+  return state == TrackingState::kOk || state == TrackingState::kDoubtful || state == TrackingState::kOdometry;
 }
 
 /// Whether a result of this state has a pose: measured or predicted.

@@ -28,6 +28,11 @@ std::string why_doubtful(double consistency) {
          " % of the matched landmarks agree closely with the pose; it may follow something that moves";
 }
 
+std::string why_odometry(int points) {
+  return "odometry: the map is not recognised; " + std::to_string(points) +
+         " points of the last frame give the motion since then, and errors add up";
+}
+
 }  // namespace
 
 SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
@@ -68,6 +73,7 @@ void SlamSystem::reset() {
   had_pose_ = false;
   map_ = 0;
   frames_.clear();
+  unsettled_ = {};
   frames_tracked_ = 0;
   changes_ = {};
   event_count_ = 0;
@@ -227,7 +233,10 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     return outcome;
   }
   if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
+  if (outcome.state == msg::TrackingState::kOdometry) output.problem = why_odometry(outcome.inliers);
   record(outcome.tracked);
+  for (const TrackedFrame& waited : unsettled_.add(outcome.tracked))
+    judge_again(waited, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
   observe_sensor(*outcome.map, outcome);

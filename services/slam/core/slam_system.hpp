@@ -16,6 +16,7 @@
 #include "services/slam/core/mapping/mapping_worker.hpp"
 #include "services/slam/core/tracking/depth_weight.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
+#include "services/slam/core/tracking/settling.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {
@@ -147,6 +148,7 @@ class SlamSystem {
   KeyframeChangeQueue changes_;
   std::vector<FrameRecord> frames_;  ///< all of the last hours (thin_out())
   std::size_t frames_tracked_ = 0;
+  UnsettledFrames unsettled_;
   std::uint64_t event_count_ = 0;
   std::size_t loops_reported_ = 0;
   std::uint64_t source_restarts_ = 0;

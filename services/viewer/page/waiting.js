@@ -14,6 +14,7 @@ const kStates = {
   initializing: ["wait", "Starting the map", "Move the camera slowly, and show it something with texture."],
   predicted: ["warn", "Predicted pose", "Nothing static is in view; the last motion is continued for a moment."],
   doubtful: ["warn", "Doubtful pose", "Much of the view contradicts it: a large object may be moving."],
+  odometry: ["warn", "Pose from frame to frame", "The map is not recognised here; errors add up until it is."],
   "recently lost": ["warn", "Tracking just lost", "Point the camera at something it has seen before."],
   lost: ["bad", "Tracking lost", "Point the camera at a place it has seen before. The map is kept."],
   relocalizing: ["warn", "Place recognised", "The pose returns when the next frames confirm it."],

@@ -307,7 +307,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, WorldMoversIn,
                                            MovingScene{"synthetic:flicker?frames=200&seed=3"},
                                            MovingScene{"synthetic:sitting?frames=420"},
                                            MovingScene{"synthetic:box?frames=240", 1},
-                                           MovingScene{"synthetic:box?frames=300&seed=63"},
+                                           MovingScene{"synthetic:box?frames=300&seed=63", 1},
                                            MovingScene{"synthetic:approach?frames=200"}));
 
 }  // namespace

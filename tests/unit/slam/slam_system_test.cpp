@@ -185,11 +185,12 @@ TEST(SlamSystem, is_lost_without_features_and_recovers) {
   EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 1e-3);
 }
 
-/// Of a view, 70 features of the world; the others look like nothing before.
-std::unique_ptr<msg::FeatureFrame> mostly_hidden(const FeatureWorld& world, std::uint64_t seq) {
+/// Of a view, some features of the world; the others look like nothing before.
+std::unique_ptr<msg::FeatureFrame> mostly_hidden(const FeatureWorld& world, std::uint64_t seq,
+                                                 std::uint32_t shown = 70) {
   auto frame = world.view(seq);
   const auto other = FeatureWorld({.seed = 100}).view(seq);
-  for (std::uint32_t i = 70; i < frame->count; ++i) {
+  for (std::uint32_t i = shown; i < frame->count; ++i) {
     frame->features[i].descriptor = other->features[i % other->count].descriptor;
   }
   return frame;
@@ -204,6 +205,44 @@ TEST(SlamSystem, few_landmarks_suffice_where_the_motion_leads) {
   EXPECT_EQ(expected.result.state, TrackingState::kOk) << expected.problem;
   EXPECT_LE(expected.result.inliers, 80U);
   EXPECT_LT(position_error_m(expected.result.T_world_camera, kSeen), 0.01);
+}
+
+TEST(SlamSystem, continues_from_frame_to_frame_without_the_map) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  slam.process(*world.view(0));
+  const SlamOutput few = slam.process(*mostly_hidden(world, 1, 26));
+  ASSERT_EQ(few.result.state, TrackingState::kOdometry) << few.problem;
+  EXPECT_THAT(few.problem, testing::HasSubstr("the map is not recognised"));
+  EXPECT_LT(position_error_m(few.result.T_world_camera, 1), 0.02);
+  EXPECT_EQ(slam.keyframes().size(), 2U) << "a young map grows at once";
+  const SlamOutput back = slam.process(*world.view(2));
+  EXPECT_EQ(back.result.state, TrackingState::kOk) << back.problem;
+  EXPECT_EQ(slam.maps().size(), 1U);
+  EXPECT_EQ(slam.trajectory().size(), 3U) << "one trajectory";
+}
+
+/// Half of the features lie on a thing that is carried along with the camera.
+std::unique_ptr<msg::FeatureFrame> beside_carried_thing(const FeatureWorld& world, std::uint64_t seq,
+                                                        std::uint8_t flags) {
+  auto frame = world.view(seq);
+  const auto thing = FeatureWorld({.seed = 9}).view(0);
+  for (std::uint32_t i = 0; i < std::min(frame->count, thing->count); i += 2) {
+    frame->features[i] = thing->features[i];
+    frame->features[i].flags = flags;
+  }
+  return frame;
+}
+
+TEST(SlamSystem, what_is_in_question_does_not_take_the_pose_along) {
+  const FeatureWorld world({});
+  SlamSystem slam = make_slam();
+  for (std::uint64_t seq = 0; seq < 20; ++seq) {
+    const std::uint8_t flags = seq < 10 ? msg::kFeatureInQuestion : msg::kFeatureRemoved;
+    const SlamOutput output = slam.process(*beside_carried_thing(world, seq, flags));
+    ASSERT_TRUE(msg::is_measured(output.result.state)) << "frame " << seq << ": " << output.problem;
+    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.01) << "frame " << seq;
+  }
 }
 
 TEST(SlamSystem, finds_back_after_a_jump) {

@@ -39,7 +39,7 @@ test("a failed service comes before everything else", () => {
 });
 
 test("every state of tracking has words", () => {
-  for (const state of ["initializing", "ok", "recently lost", "lost", "relocalizing", "predicted", "doubtful"]) {
+  for (const state of ["initializing", "ok", "recently lost", "lost", "relocalizing", "predicted", "doubtful", "odometry"]) {
     assert.doesNotMatch(title(robotWith([service("slam")], tracked(state))), /State:/, state);
   }
   assert.equal(title(robotWith([service("slam")], tracked("dreaming"))), "State: dreaming");

@@ -89,6 +89,7 @@ std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> fea
                                                    const FilterConfig& config) {
   const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells);
   const CellMask dynamic = dilate(known.shape, known.regions.hold_cs, config.masks.dilate_cells);
+  const CellMask in_question = dilate(known.shape, known.in_question, config.masks.dilate_cells);
   const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells);
   for (msg::Feature& feature : features) {
     const auto cell = static_cast<std::size_t>(known.shape.nearest_cell(feature.u_px, feature.v_px));
@@ -106,7 +107,11 @@ std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> fea
       if (config.mode == FilterMode::kSemantic && level == MotionLevel::kHigh)
         feature.static_probability = kMovingProbability;
     }
-    if (feature.static_probability < config.fusion.remove_below) feature.flags |= msg::kFeatureRemoved;
+    if (feature.static_probability < config.fusion.remove_below) {
+      feature.flags |= msg::kFeatureRemoved;
+    } else if (in_question[cell] != 0) {
+      feature.flags |= msg::kFeatureInQuestion;
+    }
   }
   keep_best_of_doubtful(features, config);
   if (!config.techniques.feature_weights) weigh_alike(features);

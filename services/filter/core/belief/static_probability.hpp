@@ -20,11 +20,12 @@ struct FrameKnowledge {
   const CellBeliefs& beliefs;                  ///< per cell, this frame included
   const DynamicRegions& regions;
   const DepthEvidence& evidence;
+  const CellMask& in_question;  ///< per cell, not 0 = it is too early to say whether the surface moves
 };
 
 /// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section
 /// 5), marks the improbable ones as removed and, if that leaves too few, keeps the best of the doubtful. Features that
-/// geometry saw moving stay removed.
+/// geometry saw moving stay removed. Those on surfaces in question keep their probability, with a flag of their own.
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config);
 

@@ -14,6 +14,7 @@ namespace {
 constexpr std::int64_t kCentisecondNs = 10'000'000;
 constexpr double kKnownToRest = 0.98;  // belief of a surface whose memory of motion came from a neighbour
 constexpr int kBesidePeopleCells = 8;
+constexpr std::int64_t kQuestionsNs = 500'000'000;  // of views, from which on everything is judged by them
 
 /// How far to look back for slow movers; 0 = not in this frame.
 std::int64_t look_back_ns(std::int64_t last_ns, std::int64_t now_ns) {
@@ -32,6 +33,10 @@ std::vector<char> features_on(const CellMask& cells, const std::vector<msg::Feat
     on[i] = cells[static_cast<std::size_t>(shape.nearest_cell(features[i].u_px, features[i].v_px))] != 0 ? 1 : 0;
   }
   return on;
+}
+
+bool any(const std::vector<char>& flags) {
+  return std::find(flags.begin(), flags.end(), 1) != flags.end();
 }
 
 /// Per feature: does it lie on the first of these areas that leaves at least half of the features, or else on `least`?
@@ -57,14 +62,15 @@ std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const De
 /// How dynamic points are found: where the camera is, what moves, how probably each feature is static.
 Verdict RtdJudge::judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) {
   const Foreground foreground = separate_foreground(scene);  // what may move, by its class
+  Questions questions = ask(scene, foreground, features);    // what may be carried, after a start
   clock.finish(msg::kStageMasks);
-  const EgoMotion ego = find_ego_motion(scene, foreground, features);
+  const EgoMotion ego = find_ego_motion(scene, foreground, features, questions);
   clock.finish(msg::kStageEgoMotion);
   const DepthEvidence evidence = compare_with_views(scene, foreground, ego);  // the multi-view check
-  const DynamicRegions regions = find_regions(scene, foreground, ego, evidence);
+  const DynamicRegions regions = find_regions(scene, foreground, questions, ego, evidence);
   std::vector<Mover> movers = follow_movers(scene, foreground, ego, regions);
   clock.finish(msg::kStageDepthCheck);
-  features = weigh(scene, ego, evidence, regions, std::move(features));  // beliefs to one probability, never starve
+  features = weigh(scene, {questions.open, regions, evidence, ego}, std::move(features));  // to one probability
   clock.finish(msg::kStageFuse);
   const CellMask dynamic = dynamic_cells(scene, foreground, regions);
   remember(scene, ego, regions, dynamic, features);
@@ -143,32 +149,52 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
   return remembered;
 }
 
+/// People are left to their class, movers to the memory of them.
+Questions RtdJudge::ask(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features) {
+  const bool asks = uses_geometry() && config_.techniques.feature_votes;
+  if (!asks || views_.spans(scene.image.stamp_ns, kQuestionsNs))
+    return {CellMask(foreground.high.size(), 0), CellMask(foreground.high.size(), 0)};
+  CellMask excluded = united(foreground.may_move, foreground.high);
+  if (!views_.empty()) {
+    const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
+    excluded = united(std::move(excluded), recall_movers(scene, foreground, T_world_predicted).hold_cs);
+    questions_.recall(scene.surfaces.grid, scene.image.camera,
+                      T_world_predicted.inverse() * views_.newest().T_world_camera,
+                      msg::minus_s(scene.image.stamp_ns, views_.newest().stamp_ns));
+  }
+  return questions_.ask({scene.surfaces.grid, scene.surfaces.rays, foreground.clusters, features}, excluded,
+                        config_.masks.min_outline_step_m);
+}
+
 EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foreground,
-                                    const std::vector<msg::Feature>& features) const {
+                                    const std::vector<msg::Feature>& features, Questions& questions) {
   if (!compares()) return {};
   const GridShape& shape = scene.shape();
   const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
-  CellMask avoid =
+  const CellMask avoid =
       united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
-  if (!views_.spans(scene.image.stamp_ns, kMinSettledAgeNs)) {  // too early to separate movers from the camera's motion
-    avoid = united(std::move(avoid), free_standing(scene.surfaces.grid, foreground.clusters, config_.masks));
-  }
   const auto& p = scene.image.camera.parameters();
   const vision::FeatureGrid feature_grid(features, p.width, p.height);
   // People at rest are left out too, so that one who rises does not take the pose along. But neither people nor memory
   // may leave too few features.
-  const std::vector<char> excluded =
+  std::vector<char> excluded =
       first_that_leaves_half(features, shape, {united(avoid, foreground.high), avoid}, foreground.may_move);
   const std::vector<int> cluster_of = clusters_of(features, foreground.clusters);
-  EgoMotion ego = estimate_ego_motion({{features, feature_grid, scene.image.camera},
-                                       excluded,
-                                       cluster_of,
-                                       foreground.clusters,
-                                       views_,
-                                       scene.image.stamp_ns,
-                                       T_world_predicted,
-                                       look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns)},
-                                      config_.ego_motion, config_.geometry);
+  const EgoMotionInput input{{features, feature_grid, scene.image.camera},
+                             excluded,
+                             cluster_of,
+                             foreground.clusters,
+                             views_,
+                             scene.image.stamp_ns,
+                             T_world_predicted,
+                             look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns)};
+  if (const std::vector<char> in_question = features_on(questions.open, features, shape); any(in_question)) {
+    questions_.answer(questions, foreground.clusters, vote_on_surfaces(input, in_question, config_.ego_motion));
+    const CellMask doubted = dilate(shape, united(questions.open, questions.moving), 1);
+    const std::vector<char> on_doubted = features_on(doubted, features, shape);
+    for (std::size_t i = 0; i < excluded.size(); ++i) excluded[i] = std::max(excluded[i], on_doubted[i]);
+  }
+  EgoMotion ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
   // Objects of a high level have a rule of their own (belief): a second later they may have stopped again.
   ego.slow_votes = without_votes_on(foreground.may_move, std::move(ego.slow_votes), foreground.clusters);
   return ego;
@@ -186,12 +212,19 @@ DepthEvidence RtdJudge::compare_with_views(const Scene& scene, const Foreground&
       foreground.clusters, ego.votes, ego.old_votes, config_.geometry);
 }
 
-DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
-                                      const DepthEvidence& evidence) const {
+/// Features of what is in question have votes of their own, which know how uncertain the pose without it is. Its depth
+/// is compared as that of everything else.
+DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground, const Questions& questions,
+                                      const EgoMotion& ego, const DepthEvidence& evidence) const {
   if (!compares()) return {false, CellMask(static_cast<std::size_t>(scene.shape().size()), 0), 0};
-  DynamicRegions regions = find_dynamic_regions(foreground.clusters, evidence, {ego.votes, ego.slow_votes},
+  const FeatureVotes quick = without_votes_on(questions.open, ego.votes, foreground.clusters);
+  const FeatureVotes slow = without_votes_on(questions.open, ego.slow_votes, foreground.clusters);
+  DynamicRegions regions = find_dynamic_regions(foreground.clusters, evidence, {quick, slow},
                                                 recall_movers(scene, foreground, ego.T_world_camera), config_.geometry);
   regions.trusted = regions.trusted && ego.reliable;
+  for (std::size_t cell = 0; cell < regions.hold_cs.size(); ++cell) {
+    if (questions.moving[cell] != 0) regions.hold_cs[cell] = to_cs(config_.geometry.memory_s);
+  }
   return regions;
 }
 
@@ -207,18 +240,23 @@ std::vector<Mover> RtdJudge::follow_movers(const Scene& scene, const Foreground&
   return movers_.movers();
 }
 
-std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const EgoMotion& ego, const DepthEvidence& evidence,
-                                          const DynamicRegions& regions, std::vector<msg::Feature> features) {
-  const MotionEvidence motion{regions, evidence, ego.votes};
+std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const Findings& found,
+                                          std::vector<msg::Feature> features) {
+  const MotionEvidence motion{found.regions, found.evidence, found.ego.votes};
   const std::vector<std::int16_t> object_on = objects_on_cells(scene.shape(), scene.objects);
   const std::vector<ObjectMotion> motions = judge_objects(scene.objects, motion, config_.belief);
   const double elapsed_s = views_.empty() ? 0.0 : msg::minus_s(scene.image.stamp_ns, views_.newest().stamp_ns);
   CellBeliefs beliefs =
-      update_beliefs(recall_beliefs(scene, ego.T_world_camera), {scene.objects, motions, object_on, motion, elapsed_s},
-                     config_.belief, config_.techniques);
-  features = weigh_static_probability(std::move(features),
-                                      {scene.shape(), scene.objects, object_on, beliefs, regions, evidence}, config_);
+      update_beliefs(recall_beliefs(scene, found.ego.T_world_camera),
+                     {scene.objects, motions, object_on, motion, elapsed_s}, config_.belief, config_.techniques);
+  features = weigh_static_probability(
+      std::move(features),
+      {scene.shape(), scene.objects, object_on, beliefs, found.regions, found.evidence, found.in_question}, config_);
+  for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
+    if (found.in_question[cell] != 0) beliefs[cell] = kNoBelief;  // nothing was learnt about it
+  }
   beliefs_.store(scene.surfaces.grid, std::move(beliefs));
+  questions_.store(scene.surfaces.grid, scene.surfaces.rays);
   return features;
 }
 
@@ -265,6 +303,7 @@ void RtdJudge::reset() {
   memory_.clear();
   movers_.clear();
   beliefs_.clear();
+  questions_.clear();
 }
 
 }  // namespace rtd::filter

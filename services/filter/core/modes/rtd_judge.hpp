@@ -6,6 +6,7 @@
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"
+#include "services/filter/core/motion/surface_questions.hpp"
 
 namespace rtd::filter {
 
@@ -30,15 +31,22 @@ class RtdJudge final : public ModeJudge {
     CellMask may_move;       ///< the same, without those that are known to rest
   };
   Foreground separate_foreground(const Scene& scene) const;
-  EgoMotion find_ego_motion(const Scene& scene, const Foreground& foreground,
-                            const std::vector<msg::Feature>& features) const;
+  Questions ask(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features);
+  EgoMotion find_ego_motion(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features,
+                            Questions& questions);
   DepthEvidence compare_with_views(const Scene& scene, const Foreground& foreground, const EgoMotion& ego) const;
-  DynamicRegions find_regions(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
-                              const DepthEvidence& evidence) const;
+  DynamicRegions find_regions(const Scene& scene, const Foreground& foreground, const Questions& questions,
+                              const EgoMotion& ego, const DepthEvidence& evidence) const;
   std::vector<Mover> follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
                                    const DynamicRegions& regions);
-  std::vector<msg::Feature> weigh(const Scene& scene, const EgoMotion& ego, const DepthEvidence& evidence,
-                                  const DynamicRegions& regions, std::vector<msg::Feature> features);
+  /// What the comparison with earlier views has led to.
+  struct Findings {
+    const CellMask& in_question;
+    const DynamicRegions& regions;
+    const DepthEvidence& evidence;
+    const EgoMotion& ego;
+  };
+  std::vector<msg::Feature> weigh(const Scene& scene, const Findings& found, std::vector<msg::Feature> features);
   /// All that moves or may move, grown by masks.dilate_cells.
   CellMask dynamic_cells(const Scene& scene, const Foreground& foreground, const DynamicRegions& regions) const {
     return united(dilate(scene.shape(), regions.hold_cs, config_.masks.dilate_cells), foreground.may_move);
@@ -63,6 +71,7 @@ class RtdJudge final : public ModeJudge {
   DynamicMemory memory_;
   MoverTracks movers_;
   SurfaceBeliefs beliefs_;
+  SurfaceQuestions questions_;
 };
 
 }  // namespace rtd::filter

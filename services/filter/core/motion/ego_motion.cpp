@@ -75,12 +75,6 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
   return matches;
 }
 
-PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
-  const msg::Feature& f = input.current.features[match.current];
-  const double sigma_px = displacement_sigma_px(f.octave, input.current.camera);
-  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
-}
-
 std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {
   std::vector<PointSighting> sightings;
   sightings.reserve(matches.size());
@@ -124,6 +118,12 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
 }
 
 }  // namespace
+
+PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
+  const msg::Feature& f = input.current.features[match.current];
+  const double sigma_px = displacement_sigma_px(f.octave, input.current.camera);
+  return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
+}
 
 double search_window_px(const geometry::CameraModel& camera, std::int64_t age_ns, const EgoMotionConfig& config) {
   constexpr double kShortest_s = 0.1, kMost_rad = 0.2;  // even the last frame is known no better

@@ -11,6 +11,7 @@
 #include "common/vision/features.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
+#include "services/filter/core/motion/static_consensus.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 
 namespace rtd::filter {
@@ -53,6 +54,9 @@ struct EgoMotionInput {
   std::int64_t look_back_ns =
       0;  ///< also compare with a view this old, to find what moves too slowly for 0.1 s; 0 = not in this frame
 };
+
+/// Where a feature was and is.
+PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input);
 
 /// The quick pose of the current frame and what it was found from.
 struct EgoMotion {

@@ -84,7 +84,7 @@ RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geome
   options.robust_rounds = 2;
   const auto& p = camera.parameters();
   const auto result = vision::optimize_pose({p.fx, p.fy, p.cx, p.cy}, observations, T_world_camera_start, options);
-  return {result.success, result.T_world_camera, result.inliers};
+  return {result.success, result.T_world_camera, result.inliers, result.covariance};
 }
 
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,

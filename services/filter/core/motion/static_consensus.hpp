@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
+#include "common/geometry/se3.hpp"
 #include "services/filter/core/filter_config.hpp"
 
 namespace rtd::filter {
@@ -36,6 +37,7 @@ struct RefinedPose {
   bool success = false;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   int inliers = 0;
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< of (position, rotation) in the world
 };
 RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
                         const Eigen::Isometry3d& T_world_camera_start, int min_inliers);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+#include "services/filter/core/surfaces/standing_out.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -159,57 +160,6 @@ std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
 }
 
 }  // namespace
-
-/// Looks a few cells outwards, past the blurred edge.
-double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m) {
-  constexpr int kReachCells = 3;
-  const GridShape& shape = grid.shape;
-  std::vector<char> on_object(static_cast<std::size_t>(shape.size()), 0);
-  for (const int cell : cells) on_object[static_cast<std::size_t>(cell)] = 1;
-  int steps = 0, flats = 0;
-  for (const int cell : cells) {
-    const int column = cell % shape.columns, row = cell / shape.columns;
-    const float z = grid.depth_m[static_cast<std::size_t>(cell)];
-    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-      const int x = column + dx, y = row + dy, far_x = column + kReachCells * dx, far_y = row + kReachCells * dy;
-      if (far_x < 0 || far_y < 0 || far_x >= shape.columns || far_y >= shape.rows) continue;
-      const int outside = shape.index(far_x, far_y);
-      if (on_object[static_cast<std::size_t>(shape.index(x, y))] != 0 ||
-          on_object[static_cast<std::size_t>(outside)] != 0) {
-        continue;
-      }
-      const float z_outside = grid.depth_m[static_cast<std::size_t>(outside)];
-      if (z_outside <= 0 || z_outside < z - min_step_m) continue;  // unknown, or the object itself is partly hidden
-      (z_outside > z + min_step_m ? steps : flats) += 1;
-    }
-  }
-  return steps + flats == 0 ? 1.0 : static_cast<double>(steps) / (steps + flats);
-}
-
-CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config) {
-  constexpr double kMaxShare = 0.4, kMinOutline = 0.6;  // of the image in all; of the outline
-  std::vector<std::vector<int>> surfaces(clusters.cells.size());
-  for (int cell = 0; cell < grid.shape.size(); ++cell) {
-    const std::int32_t label = clusters.label[static_cast<std::size_t>(cell)];
-    if (label >= 0) surfaces[static_cast<std::size_t>(label)].push_back(cell);
-  }
-  std::erase_if(surfaces, [&](const std::vector<int>& cells) {
-    return cells.empty() || outline_step_share(cells, grid, config.min_outline_step_m) < kMinOutline;
-  });
-  const auto middle_m = [&](const std::vector<int>& cells) {
-    return grid.depth_m[static_cast<std::size_t>(cells[cells.size() / 2])];
-  };
-  std::stable_sort(surfaces.begin(), surfaces.end(),
-                   [&](const auto& a, const auto& b) { return middle_m(a) < middle_m(b); });
-  CellMask mask(clusters.label.size(), 0);
-  std::size_t taken = 0;
-  for (const std::vector<int>& cells : surfaces) {
-    taken += cells.size();
-    if (static_cast<double>(taken) > kMaxShare * grid.shape.size()) break;
-    for (const int cell : cells) mask[static_cast<std::size_t>(cell)] = 1;
-  }
-  return mask;
-}
 
 std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
                                                  const MotionLevels& levels) {

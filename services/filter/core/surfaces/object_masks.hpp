@@ -70,12 +70,6 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
                                       const DepthClusters& clusters, const MaskConfig& config);
 inline constexpr std::size_t kMaxObjects = 64;
 
-/// Share of the outline of some cells beyond which the scene lies farther by `min_step_m`; 1 where nothing is known.
-double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, double min_step_m);
-/// Cells of surfaces that stand out from what surrounds them on most sides, the nearest first, up to 40 % of the image:
-/// such things can be carried about. Until there is evidence, they take no part in the camera's pose.
-CellMask free_standing(const DepthGrid& grid, const DepthClusters& clusters, const MaskConfig& config);
-
 /// The clusters with each object that is not flat as a cluster of its own: what it touches is then judged without it.
 DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects);
 

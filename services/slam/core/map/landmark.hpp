@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -39,9 +40,19 @@ struct Landmark {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< mean viewing direction, camera -> landmark, world frame
   double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
   double static_probability = 1.0;                     ///< mean over the features that it was seen as
+  bool in_question = false;                            ///< all of them were: see static_weight()
   msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
   std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
 };
+
+/// What a landmark says about a pose that sees it as `feature`: the smaller of their probabilities. Where the feature
+/// is in question, hardly anything, until other keyframes have seen the landmark when it was not.
+inline double static_weight(const msg::Feature& feature, double landmark_probability, bool landmark_in_question) {
+  constexpr double kInQuestion = 1e-3;  // with more, a carried thing near by outweighs a wall far away
+  if ((feature.flags & msg::kFeatureInQuestion) == 0)
+    return std::min<double>(feature.static_probability, landmark_probability);
+  return landmark_in_question ? kInQuestion : landmark_probability;
+}
 
 /// What tracking gathered about a landmark since the last keyframe.
 struct LandmarkStatistics {

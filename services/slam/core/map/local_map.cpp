@@ -35,6 +35,7 @@ LocalLandmark copy_landmark(const Landmark& landmark) {
           landmark.min_distance_m,
           landmark.max_distance_m,
           landmark.static_probability,
+          landmark.in_question,
           landmark.observation_weight,
           landmark.descriptor,
           0,

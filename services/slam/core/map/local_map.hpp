@@ -16,6 +16,7 @@ struct LocalLandmark {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   double min_distance_m = 0, max_distance_m = 0;
   double static_probability = 1.0;
+  bool in_question = false;
   int observation_weight = 0;
   msg::Descriptor descriptor{};
   std::uint32_t first_observer = 0, observers = 0;  ///< range in LocalMap::observers

@@ -203,13 +203,20 @@ void Map::refresh_appearance(Landmark& landmark) {
   landmark.appearance_is_current = true;
   std::array<const msg::Descriptor*, kMaxComparedDescriptors> descriptors{};
   std::size_t count = 0;
-  double probability_sum = 0;
+  double sum = 0, sum_decided = 0;
+  int decided = 0;
   for (auto it = landmark.observations.rbegin(); it != landmark.observations.rend(); ++it) {
     const msg::Feature& feature = keyframe_at(it->keyframe).frame->features[it->feature];
-    probability_sum += feature.static_probability;
+    sum += feature.static_probability;
+    if ((feature.flags & msg::kFeatureInQuestion) == 0) {
+      sum_decided += feature.static_probability;
+      ++decided;
+    }
     if (count < descriptors.size()) descriptors[count++] = &feature.descriptor;
   }
-  landmark.static_probability = probability_sum / static_cast<double>(landmark.observations.size());
+  landmark.in_question = decided == 0;
+  landmark.static_probability =
+      decided > 0 ? sum_decided / decided : sum / static_cast<double>(landmark.observations.size());
   std::array<std::array<int, kMaxComparedDescriptors>, kMaxComparedDescriptors> all_distances{};
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < i; ++j) {

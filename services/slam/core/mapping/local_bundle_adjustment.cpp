@@ -139,7 +139,7 @@ void set_intrinsics(const Map& map, const std::vector<KeyframeId>& keyframes, Bu
 BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
                                      std::uint32_t camera, std::uint32_t point) {
   const msg::Feature& f = frame.features[feature];
-  const double weight = std::min<double>(f.static_probability, landmark.static_probability);
+  const double weight = static_weight(f, landmark.static_probability, landmark.in_question);
   return {camera, point, frame.measurement(feature), sigma_px(f.octave), std::max(weight, 1e-3), true};
 }
 

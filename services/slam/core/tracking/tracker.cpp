@@ -18,6 +18,7 @@ constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
+constexpr std::size_t kYoungKeyframes = 20;  ///< of a map that may not show yet what was seen a moment ago
 
 double frame_gap_s(const Frame& earlier, const Frame& later) {
   return static_cast<double>(msg::minus_ns(later.stamp_ns, earlier.stamp_ns)) / kNanosecondsPerSecond;
@@ -119,6 +120,8 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
   if (found) {
     enter_place(outcome, std::move(frame), std::move(*found));
+  } else if (continue_without_map(outcome, frame)) {
+    return outcome;
   } else {
     reject(outcome, frame, tracking.guess);
   }
@@ -308,6 +311,26 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   inliers_ = tracking.guess.inliers;
 }
 
+/// What the last frame saw may be enough for the motion since then, though not for a place in the map. Errors add up.
+/// docs/theory/tracking.md, "Odometry".
+bool Tracker::continue_without_map(TrackOutcome& outcome, const FramePtr& frame) {
+  constexpr int kMinPoints = 20;
+  const bool young = outcome.map->component_keyframes < kYoungKeyframes;
+  if (!young || !msg::has_pose(state_) || follows_prior(*frame)) return false;
+  LocalMapTracking tracking;
+  tracking.guess = track_motion(*frame, last_, *outcome.map, predict(*frame), context());
+  if (tracking.guess.points < kMinPoints || !continues_motion(*frame, tracking.guess.T_world_camera)) return false;
+  follow(frame, *outcome.map, tracking);
+  failing_since_ns_.reset();
+  outcome.tracked = last_;
+  outcome.inliers = tracking.guess.points;
+  outcome.state = state_ = msg::TrackingState::kOdometry;
+  covariance_ += config_.sensor.shared_error * tracking.guess.covariance;
+  outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
+                                                            config_.sensor.calibration_error);
+  return true;
+}
+
 /// Too little was found: predicts for a moment, or tracking is lost. A pose from few landmarks that agrees with the
 /// prediction is better than the prediction alone.
 void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const PoseGuess& weak) {
@@ -355,6 +378,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
   situation.covered = weighed_;
+  situation.odometry = state_ == msg::TrackingState::kOdometry;
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
     situation.reference_landmarks = map.confirmed_landmarks(*reference);
   }
@@ -376,6 +400,7 @@ KeyframeProposal Tracker::propose_keyframe() {
 }
 
 bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
+  if (s.odometry) return true;
   constexpr double kYoungMapRatio = 0.4;  // with one keyframe only, its landmarks are not yet confirmed
   const double ratio = s.map_keyframes < 2 ? kYoungMapRatio : config.reference_ratio;
   const bool starving_of_close =

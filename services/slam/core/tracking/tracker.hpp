@@ -29,7 +29,8 @@ struct KeyframeSituation {
   int close_tracked = 0;        ///< close features that are landmarks
   int close_untracked = 0;      ///< close features that could become some
   bool mapper_idle = true;
-  bool covered = false;  ///< something hides most of the view, and IMU or wheels help out
+  bool odometry = false;  ///< the map is young and not recognised: it must grow here
+  bool covered = false;   ///< something hides most of the view, and IMU or wheels help out
 };
 
 /// Whether to insert a keyframe if the mapper has room: ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).
@@ -114,6 +115,7 @@ class Tracker {
   void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
+  bool continue_without_map(TrackOutcome& outcome, const FramePtr& frame);
   void reject(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   bool claim_prior(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   std::optional<PredictedPose> hold(const Frame& frame) const;

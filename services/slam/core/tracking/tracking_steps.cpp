@@ -17,13 +17,13 @@ constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
 
 /// A landmark as the world point of a feature.
 Association associate(std::uint32_t feature, const LocalLandmark& landmark) {
-  return {feature, landmark.id, landmark.position, landmark.static_probability};
+  return {feature, landmark.id, landmark.position, landmark.static_probability, landmark.in_question};
 }
 
 vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
   const msg::Feature& feature = frame.features[association.feature];
   return {association.p_world, frame.measurement(association.feature), sigma_px(feature.octave),
-          std::min<double>(feature.static_probability, association.static_probability)};
+          static_weight(feature, association.static_probability, association.in_question)};
 }
 
 PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
@@ -42,7 +42,9 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   guess.optimizer_ns = context.now_ns() - start_ns;
   guess.landmarks.assign(frame.features.size(), kNoLandmark);
   for (std::size_t i = 0; i < associations.size(); ++i) {
-    if (optimized.inlier[i] == 0 || associations[i].landmark == kNoLandmark) continue;
+    if (optimized.inlier[i] == 0) continue;
+    ++guess.points;
+    if (associations[i].landmark == kNoLandmark) continue;
     guess.landmarks[associations[i].feature] = associations[i].landmark;
     ++guess.inliers;
   }
@@ -109,30 +111,49 @@ std::vector<SearchPoint> predict_points(const Frame& frame, const TrackedFrame& 
   return search;
 }
 
-}  // namespace
-
-PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
-                           const ExpectedPose& expected, const TrackingContext& context) {
-  const SlamConfig& config = context.config;
-  const std::vector<Association> points = points_of(last, map, context);
+/// Where these points of the last frame are seen now.
+PoseGuess track_points(const Frame& frame, const TrackedFrame& last, const std::vector<Association>& points,
+                       const ExpectedPose& expected, const TrackingContext& context) {
+  const TrackerConfig& config = context.config.tracker;
   const MatchRules rules{100, 1.0, RotationCheck::kOn};
-  const double radius_px = expected.radius_px.value_or(search_radius_px(frame, last, config.tracker));
+  const double radius_px = expected.radius_px.value_or(search_radius_px(frame, last, config));
   std::vector<Match> matches;
   for (const double widening : {1.0, 2.0}) {
     const auto search = predict_points(frame, last, points, expected.T_world_camera, widening * radius_px);
     matches = match_projected(frame, search, {}, rules);
-    if (static_cast<int>(matches.size()) >= config.tracker.min_motion_matches) break;
+    if (static_cast<int>(matches.size()) >= config.min_motion_matches) break;
   }
-  if (static_cast<int>(matches.size()) < config.tracker.min_motion_matches) return {};
+  if (static_cast<int>(matches.size()) < config.min_motion_matches) return {};
   std::vector<Association> associations;
   associations.reserve(matches.size());
   for (const Match& match : matches) {
     associations.push_back(points[match.tag]);
     associations.back().feature = match.feature;
   }
-  PoseGuess guess = optimize(frame, associations, expected.T_world_camera, context);
+  return optimize(frame, associations, expected.T_world_camera, context);
+}
+
+}  // namespace
+
+PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
+                           const ExpectedPose& expected, const TrackingContext& context) {
+  PoseGuess guess = track_points(frame, last, points_of(last, map, context), expected, context);
   guess.success = guess.success && guess.inliers >= kMinLandmarks;
   return guess;
+}
+
+PoseGuess track_motion(const Frame& frame, const TrackedFrame& last, const LocalMap& map, const ExpectedPose& expected,
+                       const TrackingContext& context) {
+  constexpr double kFar_m = 6;  // of a centimetre of movement, a wall at 4 or 12 m shows the same within a pixel
+  std::vector<Association> points = points_of(last, map, context);
+  for (std::uint32_t i = 0; i < last.frame->features.size(); ++i) {
+    if (last.frame->features[i].depth_m > 0 || last.landmarks[i] != kNoLandmark) continue;
+    const msg::Feature& feature = last.frame->features[i];
+    const vision::RgbdProjection& camera = last.frame->camera;
+    const Eigen::Vector3d ray((feature.u_px - camera.cx) / camera.fx, (feature.v_px - camera.cy) / camera.fy, 1);
+    points.push_back({i, kNoLandmark, last.T_world_camera * (kFar_m * ray), feature.static_probability});
+  }
+  return track_points(frame, last, points, expected, context);
 }
 
 PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,

@@ -33,6 +33,7 @@ struct PoseGuess {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
   int inliers = 0;                    ///< landmarks, without temporary points
+  int points = 0;                     ///< with them
   std::int64_t optimizer_ns = 0;      ///< spent in pose optimisation
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
 };
@@ -43,6 +44,7 @@ struct Association {
   LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a temporary point
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
   double static_probability = 1.0;
+  bool in_question = true;  ///< Landmark::in_question; a temporary point is no more known than its feature
 };
 
 /// What the steps need beside frame and map.
@@ -61,6 +63,11 @@ struct ExpectedPose {
 /// where `expected` shows them. docs/theory/tracking.md, "Motion model".
 PoseGuess track_last_frame(const Frame& frame, const TrackedFrame& last, const LocalMap& map,
                            const ExpectedPose& expected, const TrackingContext& context);
+
+/// Frame to frame without a map: as track_last_frame(), and features of the last frame without depth count as far away,
+/// which shows how the camera has turned. docs/theory/tracking.md, "Odometry".
+PoseGuess track_motion(const Frame& frame, const TrackedFrame& last, const LocalMap& map, const ExpectedPose& expected,
+                       const TrackingContext& context);
 
 /// Frame to keyframe by descriptors alone, pose by RANSAC: after a jump or a loss. "Recovery".
 PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, const LocalMap& map,

@@ -37,8 +37,8 @@ class StaticProbabilityTest : public ::testing::Test {
     const auto object_on = objects_on_cells({160, 120}, objects_);
     const CellBeliefs beliefs =
         update_beliefs(recalled_, {objects_, motions_, object_on, evidence, 0.033}, config_.belief, config_.techniques);
-    features_ =
-        weigh_static_probability(features_, {{160, 120}, objects_, object_on, beliefs, regions_, evidence_}, config_);
+    features_ = weigh_static_probability(
+        features_, {{160, 120}, objects_, object_on, beliefs, regions_, evidence_, in_question_}, config_);
   }
   const msg::Feature& on_object() const { return features_[2]; }
   const msg::Feature& background() const { return features_[25]; }
@@ -50,6 +50,7 @@ class StaticProbabilityTest : public ::testing::Test {
   DynamicRegions regions_{true, CellMask(kImageCells, 0), 0};
   DepthEvidence evidence_ = DepthEvidence::none(kImageCells);
   CellBeliefs recalled_ = CellBeliefs(kImageCells, kNoBelief);
+  CellMask in_question_ = CellMask(kImageCells, 0);
   FilterConfig config_;
 };
 
@@ -60,6 +61,16 @@ TEST_F(StaticProbabilityTest, removes_a_person_seen_for_the_first_time) {
   EXPECT_NE(on_object().flags & msg::kFeatureInHighMask, 0);
   EXPECT_FALSE(removed(background()));
   EXPECT_EQ(background().object_id, -1);
+}
+
+TEST_F(StaticProbabilityTest, flags_what_is_in_question_and_removes_what_moves_all_the_same) {
+  in_question_.assign(kImageCells, 1);
+  weigh();
+  EXPECT_NE(background().flags & msg::kFeatureInQuestion, 0);
+  EXPECT_FALSE(removed(background()));
+  EXPECT_NEAR(background().static_probability, 0.9, 0.05) << "its probability is for later";
+  EXPECT_TRUE(removed(on_object())) << "a person";
+  EXPECT_EQ(on_object().flags & msg::kFeatureInQuestion, 0);
 }
 
 TEST_F(StaticProbabilityTest, gives_a_person_who_sits_for_long_a_low_weight) {

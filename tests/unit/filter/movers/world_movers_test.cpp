@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::int64_t kFrameNs = 33'333'333;
+constexpr std::int64_t kStepNs = 33'333'333;
 constexpr double kHalfWidthM = 0.22, kHalfDepthM = 0.13;  // of a body
 
 /// The front of an upright body as a camera at the origin sees it that looks along z, x to the right, y down.
@@ -37,10 +37,10 @@ ObjectSighting sight_body(const Vector3d& middle, std::uint32_t source, double v
 class WorldMoversTest : public ::testing::Test {
  protected:
   std::vector<WorldMover> step(const std::vector<ObjectSighting>& sightings) {
-    now_ns_ += kFrameNs;
+    now_ns_ += kStepNs;
     return movers_.place(now_ns_, Eigen::Isometry3d::Identity(), sightings);
   }
-  double time_s() const { return 1e-9 * static_cast<double>(now_ns_ + kFrameNs); }  ///< of the next step
+  double time_s() const { return 1e-9 * static_cast<double>(now_ns_ + kStepNs); }  ///< of the next step
 
   WorldMovers movers_;
   std::int64_t now_ns_ = 0;
@@ -211,7 +211,7 @@ TEST_F(WorldMoversTest, know_how_well_they_know_it) {
     velocity +=
         Vector3d(0.08 * normal(random) - 0.02 * middle.x(), 0, 0.08 * normal(random) - 0.02 * (middle.z() - 2.5));
     velocity *= 0.98;
-    middle += 1e-9 * kFrameNs * velocity;
+    middle += 1e-9 * kStepNs * velocity;
     const Vector3d off(0.03 * normal(random), 0, 0.05 * normal(random));
     const auto movers = step({sight_body(middle + off, 1)});
     ASSERT_EQ(movers.size(), 1U);
@@ -236,7 +236,7 @@ TEST_F(WorldMoversTest, are_in_the_frame_of_slams_poses) {
   Vector3d middle_camera;
   for (int i = 0; i < 50; ++i) {
     middle_camera = Vector3d(-0.3, 0, 3) + time_s() * velocity_camera;
-    now_ns_ += kFrameNs;
+    now_ns_ += kStepNs;
     movers = movers_.place(now_ns_, T_map_camera, {sight_body(middle_camera, 1)});
     ASSERT_EQ(movers.size(), 1U);
   }

@@ -130,23 +130,5 @@ TEST(ObjectMasks, keep_the_best_of_ten_thousand_boxes) {
   EXPECT_FLOAT_EQ(objects[0].score, 0.99F);
 }
 
-TEST(FreeStanding, is_what_stands_out_and_not_the_wall_behind) {
-  vision::RgbdImage image = wall_image(3.0);
-  put_block(image, {240, 100, 120, 200}, 1.5);
-  put_block(image, {0, 0, 640, 60}, 2.0);  // a beam along the ceiling stands out too, it comes after what is nearer
-  const DepthGrid grid = test::make_sampler().sample(image);
-  const CellMask mask = free_standing(grid, find_depth_clusters(grid, ClusterConfig{}), MaskConfig{});
-  EXPECT_EQ(count_in(kShape, mask, {240, 100, 120, 200}), cells_in({240, 100, 120, 200}));
-  EXPECT_EQ(count_in(kShape, mask, {0, 320, 640, 160}), 0);
-}
-
-TEST(FreeStanding, leaves_most_of_the_image) {
-  vision::RgbdImage image = wall_image(3.0);
-  put_block(image, {100, 100, 440, 330}, 1.5);  // nearly half of it
-  const DepthGrid grid = test::make_sampler().sample(image);
-  const CellMask mask = free_standing(grid, find_depth_clusters(grid, ClusterConfig{}), MaskConfig{});
-  EXPECT_EQ(count_in(kShape, mask, {0, 0, 640, 480}), 0);
-}
-
 }  // namespace
 }  // namespace rtd::filter

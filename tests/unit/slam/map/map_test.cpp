@@ -153,6 +153,31 @@ TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
   EXPECT_NEAR(landmark.max_distance_m / landmark.min_distance_m, std::pow(1.2, 7), 1e-9);
 }
 
+TEST(Map, landmark_is_in_question_until_a_keyframe_sees_it_when_it_is_not) {
+  Map map;
+  for (std::uint32_t k = 0; k < 2; ++k) {
+    auto frame = std::make_shared<Frame>();
+    msg::Feature feature{};
+    feature.static_probability = k == 0 ? 0.5F : 0.9F;
+    feature.flags = k == 0 ? msg::kFeatureInQuestion : 0;
+    frame->features.push_back(feature);
+    map.add_keyframe(frame, moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+  }
+  const msg::Feature& doubted = map.find_keyframe(0)->frame->features[0];
+  const msg::Feature& known = map.find_keyframe(1)->frame->features[0];
+  const LandmarkId id = map.add_landmark({0, 0, 2}, {0, 0});
+  map.refresh_landmark(id);
+  const Landmark& landmark = *map.find_landmark(id);
+  EXPECT_TRUE(landmark.in_question);
+  EXPECT_LT(static_weight(doubted, landmark.static_probability, landmark.in_question), 0.01);
+  EXPECT_NEAR(static_weight(known, landmark.static_probability, landmark.in_question), 0.5, 1e-6);
+  map.add_observation(id, {1, 0});
+  map.refresh_landmark(id);
+  EXPECT_FALSE(landmark.in_question);
+  EXPECT_NEAR(landmark.static_probability, 0.9, 1e-6) << "of when it was known";
+  EXPECT_NEAR(static_weight(doubted, landmark.static_probability, landmark.in_question), 0.9, 1e-6);
+}
+
 TEST(Map, keeps_its_invariants_under_random_edits) {
   std::mt19937_64 random(11);
   Map map;

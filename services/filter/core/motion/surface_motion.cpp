@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/motion/surface_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <map>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/stamps.hpp"
+
+namespace rtd::filter {
+namespace {
+
+constexpr int kMinOfSurface = 12, kMinOfRest = 20;  // sightings
+constexpr double kMovesBeyond = 40;                 // of RelativeMotion::distance2; at rest, 5 of 100 are beyond it
+constexpr double kRestsWithin = 11.3;               // 99 % of chi2 with 3 degrees of freedom
+constexpr double kCarried_m_s = 0.3;                // what is carried moves as fast
+constexpr double kSeenSigmas = 2;                   // and would show, when it covers so many standard deviations
+
+/// The features seen in both views, by where they lie. What is carried may be twice as fast as the camera turns.
+struct SharedSightings {
+  std::map<int, std::vector<PointSighting>> surfaces;  ///< in question, by cluster
+  std::vector<PointSighting> rest;
+};
+
+SharedSightings sightings_since(const View& view, const EgoMotionInput& input, const std::vector<char>& in_question,
+                                const EgoMotionConfig& config) {
+  const double window_px =
+      2 * search_window_px(input.current.camera, msg::minus_ns(input.stamp_ns, view.stamp_ns), config);
+  SharedSightings shared;
+  for (const FeatureMatch& match :
+       match_by_projection(view, input.current, input.T_world_camera_predicted, window_px, config)) {
+    const PointSighting sighting = to_sighting(match, input);
+    if (input.excluded[match.current] != 0) continue;
+    if (in_question[match.current] == 0) {
+      if (match.reference_static) shared.rest.push_back(sighting);
+    } else if (sighting.cluster >= 0) {
+      shared.surfaces[sighting.cluster].push_back(sighting);
+    }
+  }
+  return shared;
+}
+
+/// Only what would have been seen moving is known to rest.
+SurfaceVote vote(const RelativeMotion& motion, double age_s) {
+  if (motion.distance2 > kMovesBeyond) return SurfaceVote::kMoves;
+  const bool would_show = kCarried_m_s * age_s > kSeenSigmas * motion.sigma_m;
+  return motion.distance2 < kRestsWithin && would_show ? SurfaceVote::kRests : SurfaceVote::kNone;
+}
+
+}  // namespace
+
+std::optional<RelativeMotion> relative_motion(const std::vector<PointSighting>& surface,
+                                              const std::vector<PointSighting>& rest,
+                                              const geometry::CameraModel& camera,
+                                              const Eigen::Isometry3d& T_world_camera_start) {
+  const RefinedPose by_rest = refine_pose(rest, camera, T_world_camera_start, kMinOfRest);
+  const RefinedPose by_surface = refine_pose(surface, camera, T_world_camera_start, kMinOfSurface);
+  if (!by_rest.success || !by_surface.success) return std::nullopt;
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const PointSighting& sighting : surface) middle += sighting.p_world;
+  middle /= static_cast<double>(surface.size());
+  const Eigen::Vector3d moved = by_rest.T_world_camera * (by_surface.T_world_camera.inverse() * middle) - middle;
+  Eigen::Matrix<double, 3, 6> J;  // of a point there, by the camera's pose
+  J << Eigen::Matrix3d::Identity(), -geometry::skew(middle - by_rest.T_world_camera.translation());
+  const Eigen::Matrix3d covariance = J * (by_rest.covariance + by_surface.covariance) * J.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
+  return RelativeMotion{moved.dot(covariance.ldlt().solve(moved)), std::sqrt(eigen.eigenvalues()(2))};
+}
+
+std::vector<SurfaceVote> vote_on_surfaces(const EgoMotionInput& input, const std::vector<char>& in_question,
+                                          const EgoMotionConfig& config) {
+  std::vector<int> majority(input.clusters.cells.size(), 0);
+  const View* last = nullptr;
+  for (const std::int64_t age_ns : {300'000'000, 200'000'000, 100'000'000}) {
+    const View& view = input.views.of_age(input.stamp_ns, age_ns);
+    const std::int64_t real_age_ns = msg::minus_ns(input.stamp_ns, view.stamp_ns);
+    if (&view == last || real_age_ns < kMinSettledAgeNs) continue;
+    last = &view;
+    const SharedSightings shared = sightings_since(view, input, in_question, config);
+    for (const auto& [cluster, sightings] : shared.surfaces) {
+      const auto motion = relative_motion(sightings, shared.rest, input.current.camera, input.T_world_camera_predicted);
+      const SurfaceVote cast = motion ? vote(*motion, 1e-9 * static_cast<double>(real_age_ns)) : SurfaceVote::kNone;
+      majority[static_cast<std::size_t>(cluster)] += cast == SurfaceVote::kMoves   ? 1
+                                                     : cast == SurfaceVote::kRests ? -1
+                                                                                   : 0;
+    }
+  }
+  std::vector<SurfaceVote> votes;
+  votes.reserve(majority.size());
+  for (const int sum : majority)
+    votes.push_back(sum > 0 ? SurfaceVote::kMoves : sum < 0 ? SurfaceVote::kRests : SurfaceVote::kNone);
+  return votes;
+}
+
+}  // namespace rtd::filter

@@ -1,0 +1,39 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "services/filter/core/motion/ego_motion.hpp"
+#include "services/filter/core/motion/static_consensus.hpp"
+
+namespace rtd::filter {
+
+/// How a surface has moved against the rest of the scene between two views.
+struct RelativeMotion {
+  /// Squared length of the movement of its middle, in units of the covariances of both motions: chi2 with 3 degrees of
+  /// freedom for a surface at rest.
+  double distance2 = 0;
+  double sigma_m = 0;  ///< standard deviation of the movement in the direction in which it is known least
+};
+
+/// Compares the motion of the camera under which the surface stands still with that under which the rest does, each
+/// with the covariance that its own sightings give it. Empty where one of the two has too few sightings.
+/// docs/theory/dynamic_points.md section 2.
+std::optional<RelativeMotion> relative_motion(const std::vector<PointSighting>& surface,
+                                              const std::vector<PointSighting>& rest,
+                                              const geometry::CameraModel& camera,
+                                              const Eigen::Isometry3d& T_world_camera_start);
+
+/// What one frame says about a surface that may be a carried thing.
+enum class SurfaceVote : std::uint8_t { kNone, kMoves, kRests };
+
+/// Per cluster. `in_question`: per feature, 1 = on a surface in question; all others that are not excluded are the rest
+/// of the scene. Compared with views 0.1, 0.2 and 0.3 s ago, as far as there are such: the majority counts.
+std::vector<SurfaceVote> vote_on_surfaces(const EgoMotionInput& input, const std::vector<char>& in_question,
+                                          const EgoMotionConfig& config);
+
+}  // namespace rtd::filter
