@@ -124,22 +124,28 @@ std::string lower_case(std::string name) {
   return name;
 }
 
+/// What `find` makes of a part of the path, in lower case, the innermost first.
+template <class Find>
+auto in_innermost(const std::filesystem::path& folder, const Find& find) -> decltype(find(std::string())) {
+  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    if (auto found = find(lower_case(part->string()))) return found;
+  }
+  return std::nullopt;
+}
+
 /// A camera of config/cameras.
 struct KnownCamera {
   std::string file;  ///< its name there
   const std::string& text;
 };
 
-/// The camera that a path names, the innermost folder first.
-std::optional<KnownCamera> known_camera(const std::filesystem::path& folder) {
-  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
-  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-    const std::string name = lower_case(part->string());
-    if (is_bonn_name(name)) return KnownCamera{"bonn.yaml", bonn_camera_yaml()};
-    if (const std::optional<int> family = family_in(name))
-      return KnownCamera{"tum_fr" + std::to_string(*family) + ".yaml", tum_camera_yaml(*family)};
-  }
-  return std::nullopt;
+/// The camera that the name of a folder belongs to.
+std::optional<KnownCamera> known_camera(const std::string& name) {
+  if (is_bonn_name(name)) return KnownCamera{"bonn.yaml", bonn_camera_yaml()};
+  const std::optional<int> family = family_in(name);
+  if (!family) return std::nullopt;
+  return KnownCamera{"tum_fr" + std::to_string(*family) + ".yaml", tum_camera_yaml(*family)};
 }
 
 }  // namespace
@@ -179,11 +185,7 @@ Calibration read_calibration(const std::string& file) {
 }
 
 std::optional<int> tum_family(const std::filesystem::path& folder) {
-  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
-  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-    if (const std::optional<int> family = family_in(lower_case(part->string()))) return family;
-  }
-  return std::nullopt;
+  return in_innermost(folder, family_in);
 }
 
 bool is_bonn_name(const std::string& folder_name) {
@@ -193,7 +195,7 @@ bool is_bonn_name(const std::string& folder_name) {
 Calibration load_calibration(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.yaml";
   if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
-  if (const std::optional<KnownCamera> known = known_camera(std::filesystem::absolute(folder)))
+  if (const std::optional<KnownCamera> known = in_innermost(std::filesystem::absolute(folder), known_camera))
     return parse_calibration(known->text, "config/cameras/" + known->file);
   throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
                     " with one 'key: value' a line, keys " + kAllowedKeys +

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/se3.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 namespace rtd::geometry {
@@ -67,6 +69,18 @@ Matrix6d lever_arm(const Eigen::Vector3d& offset) {
   Matrix6d lever = Matrix6d::Identity();
   lever.topRightCorner<3, 3>() = -skew(offset);
   return lever;
+}
+
+Vector6d pose_difference(const Eigen::Isometry3d& T_world_from, const Eigen::Isometry3d& T_world_to) {
+  Vector6d difference;
+  difference << T_world_to.translation() - T_world_from.translation(),
+      so3_log(T_world_to.linear() * T_world_from.linear().transpose());
+  return difference;
+}
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
 double rotation_angle_rad(const Eigen::Isometry3d& T) {

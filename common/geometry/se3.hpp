@@ -36,6 +36,11 @@ Matrix6d block_rotation(const Eigen::Matrix3d& rotation);
 /// the same axes: rotation swings the translation.
 Matrix6d lever_arm(const Eigen::Vector3d& offset);
 
+/// From one pose to another: way and turn in the world, the errors that covariances (x y z rx ry rz) are of.
+Vector6d pose_difference(const Eigen::Isometry3d& T_world_from, const Eigen::Isometry3d& T_world_to);
+/// Standard deviation in the direction in which it is largest.
+double largest_sigma(const Eigen::Matrix3d& covariance);
+
 /// Angle of the rotation part (rad), in [0, pi].
 double rotation_angle_rad(const Eigen::Isometry3d& T);
 /// T with its rotation made orthonormal again (drift of long products).

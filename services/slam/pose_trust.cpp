@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/pose_trust.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,11 +27,6 @@ View view_of(const msg::TrackingResult& result, double view_removed) {
   return result.state == msg::TrackingState::kDoubtful ? View::kContradicted : View::kUnknown;
 }
 
-double largest_sigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
-}
-
 }  // namespace
 
 const char* to_string(View view) {
@@ -54,7 +48,7 @@ const char* to_string(View view) {
 /// Single frames scatter.
 double TrustMonitor::follow_view(const msg::TrackingResult& result) {
   constexpr double kMemory_s = 0.5;
-  const double elapsed_s = last_ns_ ? static_cast<double>(msg::minus_ns(result.stamp_ns, *last_ns_)) * 1e-9 : 1e9;
+  const double elapsed_s = last_ns_ ? msg::minus_s(result.stamp_ns, *last_ns_) : 1e9;
   last_ns_ = result.stamp_ns;
   view_removed_ += (1 - std::exp(-std::max(elapsed_s, 0.0) / kMemory_s)) * (share_removed(result) - view_removed_);
   return view_removed_;
@@ -68,10 +62,10 @@ PoseTrust TrustMonitor::add(const msg::TrackingResult& result, double agreement)
   trust.agreement = agreement;
   trust.view_removed = follow_view(result);
   trust.view = view_of(result, trust.view_removed);
-  trust.since_ok_s = static_cast<double>(msg::minus_ns(result.stamp_ns, *last_ok_ns_)) * 1e-9;
-  trust.position_sigma_m = largest_sigma(covariance.topLeftCorner<3, 3>());
-  trust.rotation_sigma_deg =
-      std::min(kHalfTurn_deg, largest_sigma(covariance.bottomRightCorner<3, 3>()) * kHalfTurn_deg / std::numbers::pi);
+  trust.since_ok_s = msg::minus_s(result.stamp_ns, *last_ok_ns_);
+  trust.position_sigma_m = geometry::largest_sigma(covariance.topLeftCorner<3, 3>());
+  trust.rotation_sigma_deg = std::min(
+      kHalfTurn_deg, geometry::largest_sigma(covariance.bottomRightCorner<3, 3>()) * kHalfTurn_deg / std::numbers::pi);
   return trust;
 }
 

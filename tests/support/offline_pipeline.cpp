@@ -81,6 +81,22 @@ void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& re
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
 }
 
+/// With a prior, predicted poses count beside measured ones.
+void judge_results(const std::vector<slam::FrameResult>& results, bool has_prior, OfflineReport& report) {
+  std::vector<slam::FrameResult> judged;
+  std::vector<eval::PublishedPose> published;
+  for (const slam::FrameResult& result : results) {
+    published.push_back(published_pose(result));
+    const bool predicted = has_prior && result.state == msg::TrackingState::kPredicted;
+    if (predicted) ++report.predicted_frames;
+    if ((predicted || msg::is_measured(result.state)) && result.map_id == 0) judged.push_back(result);
+  }
+  evaluate(judged, report);
+  report.integrity = eval::judge_integrity(published, report.groundtruth);
+  report.doubtful_frames = report.integrity.in_state[static_cast<std::size_t>(msg::TrackingState::kDoubtful)];
+  report.drift = eval::measure_drift(eval::measured_poses(published), report.groundtruth);
+}
+
 ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groundtruth) {
   ClosedLoop loop{closure, std::nan(""), std::nan("")};
   const auto older = true_pose(groundtruth, closure.older_ns), newer = true_pose(groundtruth, closure.newer_ns);
@@ -132,8 +148,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   slam::SlamSystem slam(with_priors(options.slam, source->info()), options.mapping, options.now_ns);
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
-  std::vector<slam::FrameResult> published;
-  std::vector<eval::PublishedPose> results;
+  std::vector<slam::FrameResult> results;
   ImageFaults image_faults(options.front_end.image_faults);
   const auto pass_over = [&source](std::size_t frames) {
     for (std::size_t i = 0; i < frames; ++i) source->next();
@@ -158,19 +173,12 @@ OfflineReport run_offline(const OfflineOptions& options) {
                                                         std::chrono::duration<double>(options.min_period_s));
     add_motion(slam, *frame);
     const slam::SlamOutput output = slam.process(*message);
-    ++report.states[msg::to_string(output.result.state)];
     front_end->listen(output);
     add_stage_times(output.result, report);
     report.keyframes = output.result.keyframes;
     report.landmarks = output.result.landmarks;
     ++report.frames;
-    results.push_back(published_pose(output.result));
-    if (output.result.state == msg::TrackingState::kDoubtful) ++report.doubtful_frames;
-    const bool predicted = slam.prior() != nullptr && output.result.state == msg::TrackingState::kPredicted;
-    if (predicted) ++report.predicted_frames;
-    if ((predicted || msg::is_measured(output.result.state)) && output.result.map_id == 0) {
-      published.push_back(output.result);
-    }
+    results.push_back(output.result);
     if (options.on_frame) options.on_frame(output);
     pass_over(options.frame_step - 1);
   }
@@ -184,9 +192,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   report.trajectory = slam.trajectory();
   report.groundtruth = source->groundtruth();
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
-  evaluate(published, report);
-  report.integrity = eval::judge_integrity(results, report.groundtruth);
-  report.drift = eval::measure_drift(eval::measured_poses(results), report.groundtruth);
+  judge_results(results, slam.prior() != nullptr, report);
   return report;
 }
 

@@ -78,8 +78,7 @@ struct ClosedLoop {
 /// The whole system in one thread without transport: what lockstep computes.
 struct OfflineReport {
   std::size_t frames = 0, doubtful_frames = 0, keyframes = 0, landmarks = 0;
-  std::map<std::string, std::size_t> states;  ///< frames by the state of their result
-  std::string trajectory_tum;                 ///< as rtd-slam writes trajectory.txt
+  std::string trajectory_tum;  ///< as rtd-slam writes trajectory.txt
   eval::Trajectory trajectory, groundtruth;
   double ate_rmse_m = 0;         ///< of the final trajectory; NaN without ground truth
   double online_ate_rmse_m = 0;  ///< of the poses as they were published

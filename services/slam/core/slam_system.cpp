@@ -12,25 +12,21 @@
 namespace rtd::slam {
 namespace {
 
-const char* failure_name(msg::TrackingState state) {
-  const bool says_more = state == msg::TrackingState::kPredicted || state == msg::TrackingState::kRelocalizing;
-  return says_more ? msg::to_string(state) : "lost";
-}
-
-std::string why_without_pose(int inliers, int needed) {
-  const std::string found = std::to_string(inliers);
-  if (inliers < needed) return found + " of " + std::to_string(needed) + " landmarks that a pose needs";
-  return found + " landmarks agree with a pose that is not believed, because too few of the expected ones were found";
-}
-
-std::string why_doubtful(double consistency) {
-  return "doubtful: only " + std::to_string(std::lround(100 * consistency)) +
-         " % of the matched landmarks agree closely with the pose; it may follow something that moves";
-}
-
-std::string why_odometry(int points) {
-  return "odometry: the map is not recognised; " + std::to_string(points) +
-         " points of the last frame give the motion since then, and errors add up";
+/// One line for people about a frame that is not tracked as it should be; empty where it is. `needed`: landmarks.
+std::string problem_of(const TrackOutcome& outcome, int needed) {
+  using State = msg::TrackingState;
+  const std::string state = msg::to_string(outcome.state), found = std::to_string(outcome.inliers);
+  if (outcome.at_place()) return state + ": a place was recognised, the next frames have to agree";
+  if (outcome.state == State::kOk) return "";
+  if (outcome.state == State::kDoubtful)
+    return state + ": only " + std::to_string(std::lround(100 * outcome.consistency)) +
+           " % of the matched landmarks agree closely with the pose; it may follow something that moves";
+  if (outcome.state == State::kOdometry)
+    return state + ": the map is not recognised; " + found +
+           " points of the last frame give the motion since then, and errors add up";
+  const std::string begin = (outcome.state == State::kRecentlyLost ? "lost" : state) + ": " + found;
+  if (outcome.inliers < needed) return begin + " of " + std::to_string(needed) + " landmarks that a pose needs";
+  return begin + " landmarks agree with a pose that is not believed, because too few of the expected ones were found";
 }
 
 }  // namespace
@@ -221,22 +217,17 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   const Eigen::Isometry3d before = tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->track(input.frame, snapshot);
   if (wants_new_map(*input.frame, outcome)) return begin_map(input, output);
+  output.problem = problem_of(outcome, config_.tracker.min_inliers);
   if (outcome.at_place()) {
-    output.problem = "relocalizing: a place was recognised, the next frames have to agree";
     follow_reference(outcome);
     return outcome;
   }
   if (!msg::is_measured(outcome.state)) {
-    output.problem = std::string(failure_name(outcome.state)) + ": " +
-                     why_without_pose(outcome.inliers, config_.tracker.min_inliers);
     if (outcome.tracked.frame != nullptr) record(outcome.tracked);
     return outcome;
   }
-  if (outcome.state == msg::TrackingState::kDoubtful) output.problem = why_doubtful(outcome.consistency);
-  if (outcome.state == msg::TrackingState::kOdometry) output.problem = why_odometry(outcome.inliers);
   record(outcome.tracked);
-  for (const TrackedFrame& waited : unsettled_.add(outcome.tracked))
-    judge_again(waited, *outcome.map, {config_, now_ns_}, frames_);
+  unsettled_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
   observe_sensor(*outcome.map, outcome);

@@ -88,7 +88,7 @@ void print_json(const rtd::test_support::OfflineReport& report) {
                                {"nees", report.nees},
                                {"doubtful", static_cast<double>(report.doubtful_frames) /
                                                 std::max<double>(1, static_cast<double>(report.frames))},
-                               {"states", report.states},
+                               {"states", integrity["states"]},
                                {"max_error_m", lost_m},
                                {"predicted", report.predicted_frames},
                                {"predicted_nees", report.predicted_nees},

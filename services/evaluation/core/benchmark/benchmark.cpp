@@ -8,8 +8,8 @@
 #include <set>
 
 #include "common/msg/filter_modes.hpp"
-#include "common/msg/tracking.hpp"
 #include "services/evaluation/core/benchmark/published.hpp"
+#include "services/evaluation/core/integrity/integrity.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -32,7 +32,9 @@ void add_shares(const nlohmann::json& printed, Figures& figures) {
   const double frames = find(figures, "frames").value_or(0);
   if (frames <= 0 || !printed.contains("states")) return;
   double lost = frames;
-  for (const auto state : {msg::TrackingState::kOk, msg::TrackingState::kDoubtful, msg::TrackingState::kPredicted}) {
+  for (std::size_t i = 0; i < kTrackingStates; ++i) {
+    const auto state = static_cast<msg::TrackingState>(i);
+    if (!msg::has_pose(state)) continue;
     const double count = find(figures, std::string("states.") + to_string(state)).value_or(0);
     figures[std::string("share.") + to_string(state)] = count / frames;
     lost -= count;

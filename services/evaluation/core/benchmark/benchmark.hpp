@@ -25,7 +25,7 @@ Perturbation perturbation_of(int run);
 
 /// The figures of a run by name: the numbers in the line of JSON that the program printed, those of objects as
 /// "object.key", and what is computed of them: "ms" (a frame in filter and slam), "share.ok", "share.doubtful",
-/// "share.predicted", "share.lost". What is unknown is not in it.
+/// "share.odometry", "share.predicted", "share.lost". What is unknown is not in it.
 using Figures = std::map<std::string, double>;
 Figures figures_of(const nlohmann::json& printed);
 

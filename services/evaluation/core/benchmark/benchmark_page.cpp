@@ -34,7 +34,7 @@ constexpr std::array kColumns{
     Column{"rpe_deg", "RPE [deg/s]", "{:.3f}", 1, Show::kMedian, true, false},
     Column{"coverage", "coverage", "{:.3f}", 1, Show::kLeast, true, false},
     Column{"ms", "ms", "{:.1f}", 1, Show::kMedian, true, false},
-    Column{"share.ok", "ok/doubtful/predicted/lost %", "{:.3g}", 100, Show::kStates, true, false},
+    Column{"share.ok", "ok/doubtful/odometry/predicted/lost %", "{:.3g}", 100, Show::kStates, true, false},
     Column{"integrity.dangerous_share", "dangerous, most %", "{:.2f}", 100, Show::kMost, true, true},
     Column{"integrity.needless_doubt_share", "needless doubt %", "{:.2f}", 100, Show::kMedian, true, true},
     Column{"integrity.delay_s_max", "delay, most [s]", "{:.2f}", 1, Show::kMost, true, true},
@@ -47,10 +47,10 @@ std::string spread_cell(const Spread& s, const char* format) {
   return best == worst ? median : fmt::format("{} ({}–{})", median, best, worst);
 }
 
-/// "97.5 / 2.5 / 0 / 0": the medians.
+/// "97.5 / 2.5 / 0 / 0 / 0": the medians.
 std::string states_cell(const BenchmarkRow& row, const Column& column) {
   std::string text;
-  for (const char* share : {"share.ok", "share.doubtful", "share.predicted", "share.lost"})
+  for (const char* share : {"share.ok", "share.doubtful", "share.odometry", "share.predicted", "share.lost"})
     text += (text.empty() ? "" : " / ") + number_text(column.factor * row.figure(share).median, column.format);
   return text;
 }
@@ -236,11 +236,12 @@ std::string benchmark_html(const Benchmark& benchmark, const Benchmark* before) 
   if (const std::vector<std::string> notes = notes_of(view); !notes.empty())
     body += html::section("Notes", "", html::list(notes));
   for (const std::string& sequence : sequences_of(view)) {
-    const std::string note = sequence == kMeanName
-                                 ? "Of the sequences over which publications give the mean."
-                                 : "ATE: median (best–worst run); coverage: least; the others: median. ms: a frame in "
-                                   "filter and slam, without the detector. States: ok / doubtful / predicted / lost. "
-                                   "How: alignment, what it runs on, source [n] below.";
+    const std::string note =
+        sequence == kMeanName
+            ? "Of the sequences over which publications give the mean."
+            : "ATE: median (best–worst run); coverage: least; the others: median. ms: a frame in "
+              "filter and slam, without the detector. States: ok / doubtful / odometry / predicted / lost. "
+              "How: alignment, what it runs on, source [n] below.";
     body += html::section(sequence, note,
                           "<div style=\"overflow-x:auto;white-space:nowrap\">" +
                               html::table({head(view), table_of(view, sequence)}) + "</div>\n");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/msg/stamps.hpp"
 #include "services/evaluation/core/integrity/nees.hpp"
 
 namespace rtd::eval {
@@ -17,10 +18,6 @@ constexpr std::int64_t kStampTolerance_ns = 1'000'000;
 
 bool is_ok(const PublishedPose& pose) {
   return pose.state == msg::TrackingState::kOk;
-}
-
-double seconds_between(const PublishedPose& from, const PublishedPose& to) {
-  return static_cast<double>(to.stamp_ns - from.stamp_ns) * 1e-9;
 }
 
 /// The true pose of each frame that has a pose; null where either is missing.
@@ -69,7 +66,7 @@ void measure_delays(const Published& published, const Errors& errors, const Inte
     std::size_t noticed = i;
     while (noticed < end && is_ok(published[noticed])) ++noticed;
     if (is_ok(published[noticed])) ++integrity.unnoticed;
-    delays_s.push_back(seconds_between(published[i], published[noticed]));
+    delays_s.push_back(msg::minus_s(published[noticed].stamp_ns, published[i].stamp_ns));
   }
   integrity.episodes = delays_s.size();
   integrity.delay_s_max = percentile(delays_s, 1);

@@ -12,9 +12,7 @@ namespace rtd::eval {
 /// rx ry rz, m and rad, world frame): 6 in the mean if that is true. docs/theory/tracking.md Eq. (4).
 inline double nees(const Eigen::Isometry3d& T_world_camera, const geometry::Matrix6d& covariance,
                    const Eigen::Isometry3d& T_world_camera_true) {
-  geometry::Vector6d error;
-  error.head<3>() = T_world_camera.translation() - T_world_camera_true.translation();
-  error.tail<3>() = geometry::so3_log(T_world_camera.linear() * T_world_camera_true.linear().transpose());
+  const geometry::Vector6d error = geometry::pose_difference(T_world_camera_true, T_world_camera);
   return error.dot(covariance.ldlt().solve(error));
 }
 

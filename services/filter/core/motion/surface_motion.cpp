@@ -3,9 +3,7 @@
 #include "services/filter/core/motion/surface_motion.hpp"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <cmath>
-#include <map>
+#include <algorithm>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/stamps.hpp"
@@ -19,7 +17,7 @@ constexpr double kRestsWithin = 11.3;               // 99 % of chi2 with 3 degre
 constexpr double kCarried_m_s = 0.3;                // what is carried moves as fast
 constexpr double kSeenSigmas = 2;                   // and would show, when it covers so many standard deviations
 
-/// The features seen in both views, by where they lie. What is carried may be twice as fast as the camera turns.
+/// The features seen in both views, by where they lie.
 struct SharedSightings {
   std::map<int, std::vector<PointSighting>> surfaces;  ///< in question, by cluster
   std::vector<PointSighting> rest;
@@ -27,7 +25,7 @@ struct SharedSightings {
 
 SharedSightings sightings_since(const View& view, const EgoMotionInput& input, const std::vector<char>& in_question,
                                 const EgoMotionConfig& config) {
-  const double window_px =
+  const double window_px =  // what is carried may be twice as fast as the camera turns
       2 * search_window_px(input.current.camera, msg::minus_ns(input.stamp_ns, view.stamp_ns), config);
   SharedSightings shared;
   for (const FeatureMatch& match :
@@ -43,6 +41,21 @@ SharedSightings sightings_since(const View& view, const EgoMotionInput& input, c
   return shared;
 }
 
+Eigen::Vector3d middle_of(const std::vector<PointSighting>& sightings) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const PointSighting& sighting : sightings) sum += sighting.p_world;
+  return sum / static_cast<double>(sightings.size());
+}
+
+/// How the middle of a surface has moved, by two motions of the camera.
+RelativeMotion between(const RefinedPose& by_rest, const RefinedPose& by_surface, const Eigen::Vector3d& middle) {
+  const Eigen::Vector3d moved = by_rest.T_world_camera * (by_surface.T_world_camera.inverse() * middle) - middle;
+  Eigen::Matrix<double, 3, 6> J;  // of a point there, by the camera's pose
+  J << Eigen::Matrix3d::Identity(), -geometry::skew(middle - by_rest.T_world_camera.translation());
+  const Eigen::Matrix3d covariance = J * (by_rest.covariance + by_surface.covariance) * J.transpose();
+  return {moved.dot(covariance.ldlt().solve(moved)), geometry::largest_sigma(covariance)};
+}
+
 /// Only what would have been seen moving is known to rest.
 SurfaceVote vote(const RelativeMotion& motion, double age_s) {
   if (motion.distance2 > kMovesBeyond) return SurfaceVote::kMoves;
@@ -52,22 +65,18 @@ SurfaceVote vote(const RelativeMotion& motion, double age_s) {
 
 }  // namespace
 
-std::optional<RelativeMotion> relative_motion(const std::vector<PointSighting>& surface,
-                                              const std::vector<PointSighting>& rest,
-                                              const geometry::CameraModel& camera,
-                                              const Eigen::Isometry3d& T_world_camera_start) {
+std::map<int, RelativeMotion> relative_motions(const std::map<int, std::vector<PointSighting>>& surfaces,
+                                               const std::vector<PointSighting>& rest,
+                                               const geometry::CameraModel& camera,
+                                               const Eigen::Isometry3d& T_world_camera_start) {
+  std::map<int, RelativeMotion> motions;
   const RefinedPose by_rest = refine_pose(rest, camera, T_world_camera_start, kMinOfRest);
-  const RefinedPose by_surface = refine_pose(surface, camera, T_world_camera_start, kMinOfSurface);
-  if (!by_rest.success || !by_surface.success) return std::nullopt;
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const PointSighting& sighting : surface) middle += sighting.p_world;
-  middle /= static_cast<double>(surface.size());
-  const Eigen::Vector3d moved = by_rest.T_world_camera * (by_surface.T_world_camera.inverse() * middle) - middle;
-  Eigen::Matrix<double, 3, 6> J;  // of a point there, by the camera's pose
-  J << Eigen::Matrix3d::Identity(), -geometry::skew(middle - by_rest.T_world_camera.translation());
-  const Eigen::Matrix3d covariance = J * (by_rest.covariance + by_surface.covariance) * J.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return RelativeMotion{moved.dot(covariance.ldlt().solve(moved)), std::sqrt(eigen.eigenvalues()(2))};
+  if (!by_rest.success) return motions;
+  for (const auto& [cluster, sightings] : surfaces) {
+    const RefinedPose by_surface = refine_pose(sightings, camera, T_world_camera_start, kMinOfSurface);
+    if (by_surface.success) motions[cluster] = between(by_rest, by_surface, middle_of(sightings));
+  }
+  return motions;
 }
 
 std::vector<SurfaceVote> vote_on_surfaces(const EgoMotionInput& input, const std::vector<char>& in_question,
@@ -76,22 +85,18 @@ std::vector<SurfaceVote> vote_on_surfaces(const EgoMotionInput& input, const std
   const View* last = nullptr;
   for (const std::int64_t age_ns : {300'000'000, 200'000'000, 100'000'000}) {
     const View& view = input.views.of_age(input.stamp_ns, age_ns);
-    const std::int64_t real_age_ns = msg::minus_ns(input.stamp_ns, view.stamp_ns);
-    if (&view == last || real_age_ns < kMinSettledAgeNs) continue;
+    if (&view == last || msg::minus_ns(input.stamp_ns, view.stamp_ns) < kMinSettledAgeNs) continue;
     last = &view;
     const SharedSightings shared = sightings_since(view, input, in_question, config);
-    for (const auto& [cluster, sightings] : shared.surfaces) {
-      const auto motion = relative_motion(sightings, shared.rest, input.current.camera, input.T_world_camera_predicted);
-      const SurfaceVote cast = motion ? vote(*motion, 1e-9 * static_cast<double>(real_age_ns)) : SurfaceVote::kNone;
-      majority[static_cast<std::size_t>(cluster)] += cast == SurfaceVote::kMoves   ? 1
-                                                     : cast == SurfaceVote::kRests ? -1
-                                                                                   : 0;
+    for (const auto& [cluster, motion] :
+         relative_motions(shared.surfaces, shared.rest, input.current.camera, input.T_world_camera_predicted)) {
+      majority[static_cast<std::size_t>(cluster)] +=
+          static_cast<int>(vote(motion, msg::minus_s(input.stamp_ns, view.stamp_ns)));
     }
   }
   std::vector<SurfaceVote> votes;
   votes.reserve(majority.size());
-  for (const int sum : majority)
-    votes.push_back(sum > 0 ? SurfaceVote::kMoves : sum < 0 ? SurfaceVote::kRests : SurfaceVote::kNone);
+  for (const int sum : majority) votes.push_back(static_cast<SurfaceVote>(std::clamp(sum, -1, 1)));
   return votes;
 }
 

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <optional>
+#include <map>
 #include <vector>
 
 #include "services/filter/core/motion/ego_motion.hpp"
@@ -20,16 +20,16 @@ struct RelativeMotion {
   double sigma_m = 0;  ///< standard deviation of the movement in the direction in which it is known least
 };
 
-/// Compares the motion of the camera under which the surface stands still with that under which the rest does, each
-/// with the covariance that its own sightings give it. Empty where one of the two has too few sightings.
-/// docs/theory/dynamic_points.md section 2.
-std::optional<RelativeMotion> relative_motion(const std::vector<PointSighting>& surface,
-                                              const std::vector<PointSighting>& rest,
-                                              const geometry::CameraModel& camera,
-                                              const Eigen::Isometry3d& T_world_camera_start);
+/// Compares the motion of the camera under which each surface stands still with that under which the rest does, each
+/// with the covariance that its own sightings give it. By surface; without those that have too few sightings, and
+/// without any where the rest has. docs/theory/dynamic_points.md section 2.
+std::map<int, RelativeMotion> relative_motions(const std::map<int, std::vector<PointSighting>>& surfaces,
+                                               const std::vector<PointSighting>& rest,
+                                               const geometry::CameraModel& camera,
+                                               const Eigen::Isometry3d& T_world_camera_start);
 
-/// What one frame says about a surface that may be a carried thing.
-enum class SurfaceVote : std::uint8_t { kNone, kMoves, kRests };
+/// What one frame says about a surface that may be a carried thing. Votes add up.
+enum class SurfaceVote : std::int8_t { kRests = -1, kNone = 0, kMoves = 1 };
 
 /// Per cluster. `in_question`: per feature, 1 = on a surface in question; all others that are not excluded are the rest
 /// of the scene. Compared with views 0.1, 0.2 and 0.3 s ago, as far as there are such: the majority counts.

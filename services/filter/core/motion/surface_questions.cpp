@@ -48,8 +48,11 @@ Questions SurfaceQuestions::ask(const Surroundings& surroundings, const CellMask
   Questions questions{surfaces_in_question(surroundings, {excluded, asked, decided}, min_step_m),
                       CellMask(notes_.size(), 0)};
   for (std::size_t cell = 0; cell < notes_.size(); ++cell) {
-    if (questions.open[cell] == 0) notes_[cell] = decided[cell] != 0 ? kRests : kNothing;
-    if (questions.open[cell] != 0 && !is_open(notes_[cell])) notes_[cell] = kEven;
+    if (questions.open[cell] == 0) {
+      if (is_open(notes_[cell])) notes_[cell] = kNothing;
+    } else if (!is_open(notes_[cell])) {
+      notes_[cell] = kEven;
+    }
   }
   return questions;
 }
@@ -60,8 +63,7 @@ void SurfaceQuestions::answer(Questions& questions, const DepthClusters& cluster
   for (std::size_t cell = 0; cell < notes_.size(); ++cell) {
     if (questions.open[cell] == 0 || clusters.label[cell] < 0) continue;
     const auto cluster = static_cast<std::size_t>(clusters.label[cell]);
-    const int cast = votes[cluster] == SurfaceVote::kMoves ? 1 : votes[cluster] == SurfaceVote::kRests ? -1 : 0;
-    const int sum = before[cluster] + cast;
+    const int sum = before[cluster] + static_cast<int>(votes[cluster]);
     notes_[cell] = static_cast<std::uint8_t>(kEven + sum);
     if (std::abs(sum) < kEnoughVotes) continue;
     questions.open[cell] = 0;

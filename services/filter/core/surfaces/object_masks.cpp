@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <utility>
+
 #include "services/filter/core/surfaces/standing_out.hpp"
 
 namespace rtd::filter {

@@ -26,11 +26,16 @@ void thin_out(std::vector<FrameRecord>& frames, std::size_t limit) {
   frames.resize(kept);
 }
 
+FrameRecord* find_frame(std::vector<FrameRecord>& frames, std::uint64_t seq) {
+  const auto frame =
+      std::find_if(frames.rbegin(), frames.rend(), [seq](const FrameRecord& record) { return record.seq == seq; });
+  return frame == frames.rend() ? nullptr : &*frame;
+}
+
 void correct_frames(std::span<const PoseCorrection> corrections, std::vector<FrameRecord>& frames) {
   for (const auto& [seq, T_claimed_smoothed] : corrections) {
-    const auto frame =
-        std::find_if(frames.rbegin(), frames.rend(), [seq](const FrameRecord& record) { return record.seq == seq; });
-    if (frame != frames.rend()) frame->T_reference_camera = frame->T_reference_camera * T_claimed_smoothed;
+    FrameRecord* const frame = find_frame(frames, seq);
+    if (frame != nullptr) frame->T_reference_camera = frame->T_reference_camera * T_claimed_smoothed;
   }
 }
 

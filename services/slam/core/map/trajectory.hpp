@@ -28,6 +28,9 @@ void thin_out(std::vector<FrameRecord>& frames, std::size_t limit);
 /// Ties frames of keyframes that were removed to those that still exist.
 void tie_to_living(std::vector<FrameRecord>& frames, const Map& map);
 
+/// The record of a recent frame; null where there is none (any more).
+FrameRecord* find_frame(std::vector<FrameRecord>& frames, std::uint64_t seq);
+
 /// What later poses say of one that was predicted: it is T_world_camera * T_claimed_smoothed.
 struct PoseCorrection {
   std::uint64_t seq = 0;

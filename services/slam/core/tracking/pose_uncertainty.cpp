@@ -52,9 +52,7 @@ PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const Pre
 }
 
 double pose_distance2(const PredictedPose& a, const PredictedPose& b) {
-  geometry::Vector6d difference;
-  difference << b.T_world_camera.translation() - a.T_world_camera.translation(),
-      geometry::so3_log(b.T_world_camera.linear() * a.T_world_camera.linear().transpose());
+  const geometry::Vector6d difference = geometry::pose_difference(a.T_world_camera, b.T_world_camera);
   const geometry::Matrix6d covariance = a.covariance + b.covariance;
   return difference.dot(covariance.ldlt().solve(difference));
 }

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -36,8 +35,8 @@ bool Tracker::follows_prior(const Frame& frame) const {
   if (!expected_ || !config_.techniques.prediction || !msg::has_pose(state_)) return false;
   const double gap_s = seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
   const Eigen::Matrix3d position = expected_->covariance.topLeftCorner<3, 3>();
-  const double variance = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(position).eigenvalues().maxCoeff();
-  return gap_s > 0 && gap_s <= config_.prior.max_hold_s && std::sqrt(variance) <= config_.prior.max_sigma_m;
+  return gap_s > 0 && gap_s <= config_.prior.max_hold_s &&
+         geometry::largest_sigma(position) <= config_.prior.max_sigma_m;
 }
 
 /// Three standard deviations of where a landmark at the usual distance is seen, and what a feature itself is off.
@@ -86,9 +85,7 @@ bool Tracker::claim_prior(TrackOutcome& outcome, const FramePtr& frame, const Po
   outcome.tracked.reference = last_.reference;
   const Eigen::Isometry3d T_world_reference = last_.T_world_camera * last_.T_reference_camera.inverse();
   outcome.tracked.T_reference_camera = T_world_reference.inverse() * claimed.T_world_camera;
-  outcome.covariance =
-      claimed.covariance + map_covariance_ +
-      calibration_covariance(since_first(claimed.T_world_camera), scene_m_, config_.sensor.calibration_error);
+  outcome.covariance = claimed.covariance + map_covariance_ + of_calibration(claimed.T_world_camera);
   outcome.state = state_ = msg::TrackingState::kPredicted;
   return true;
 }

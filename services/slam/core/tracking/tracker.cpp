@@ -18,7 +18,6 @@ constexpr double kNanosecondsPerSecond = 1e9;
 constexpr double kMinShareOfJump = 0.25;
 constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
-constexpr std::size_t kYoungKeyframes = 20;  ///< of a map that may not show yet what was seen a moment ago
 
 double frame_gap_s(const Frame& earlier, const Frame& later) {
   return static_cast<double>(msg::minus_ns(later.stamp_ns, earlier.stamp_ns)) / kNanosecondsPerSecond;
@@ -120,9 +119,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
   if (found) {
     enter_place(outcome, std::move(frame), std::move(*found));
-  } else if (continue_without_map(outcome, frame)) {
-    return outcome;
-  } else {
+  } else if (!continue_without_map(outcome, frame)) {
     reject(outcome, frame, tracking.guess);
   }
   return outcome;
@@ -239,8 +236,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
   if (prior_ != nullptr && !weighed_) report_to_prior(local, had_pose);
-  outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
-                                                            config_.sensor.calibration_error);
+  outcome.covariance = covariance_ + of_calibration(last_.T_world_camera);
 }
 
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
@@ -309,54 +305,6 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
   inliers_ = tracking.guess.inliers;
-}
-
-/// What the last frame saw may be enough for the motion since then, though not for a place in the map. Errors add up.
-/// docs/theory/tracking.md, "Odometry".
-bool Tracker::continue_without_map(TrackOutcome& outcome, const FramePtr& frame) {
-  constexpr int kMinPoints = 20;
-  const bool young = outcome.map->component_keyframes < kYoungKeyframes;
-  if (!young || !msg::has_pose(state_) || follows_prior(*frame)) return false;
-  LocalMapTracking tracking;
-  tracking.guess = track_motion(*frame, last_, *outcome.map, predict(*frame), context());
-  if (tracking.guess.points < kMinPoints || !continues_motion(*frame, tracking.guess.T_world_camera)) return false;
-  follow(frame, *outcome.map, tracking);
-  failing_since_ns_.reset();
-  outcome.tracked = last_;
-  outcome.inliers = tracking.guess.points;
-  outcome.state = state_ = msg::TrackingState::kOdometry;
-  covariance_ += config_.sensor.shared_error * tracking.guess.covariance;
-  outcome.covariance = covariance_ + calibration_covariance(since_first(last_.T_world_camera), scene_m_,
-                                                            config_.sensor.calibration_error);
-  return true;
-}
-
-/// Too little was found: predicts for a moment, or tracking is lost. A pose from few landmarks that agrees with the
-/// prediction is better than the prediction alone.
-void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const PoseGuess& weak) {
-  if (claim_prior(outcome, frame_in_work, weak)) return;
-  const Frame& frame = *frame_in_work;
-  if (auto claimed = hold(frame)) {
-    const PredictedPose measured{weak.T_world_camera, weak.covariance};
-    const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
-    if (usable && measured.covariance.trace() < claimed->covariance.trace() &&
-        pose_distance2(*claimed, measured) < kMaxPoseDistance2) {
-      claimed = measured;
-    }
-    outcome.tracked.T_world_camera = claimed->T_world_camera;
-    outcome.covariance =
-        config_.sensor.shared_error * claimed->covariance + map_covariance_ +
-        calibration_covariance(since_first(claimed->T_world_camera), scene_m_, config_.sensor.calibration_error);
-    outcome.state = state_ = msg::TrackingState::kPredicted;
-    return;
-  }
-  if (!failing_since_ns_) failing_since_ns_ = frame.stamp_ns;
-  const double failing_s = msg::minus_s(frame.stamp_ns, *failing_since_ns_);
-  motion_.reset();
-  const bool recent = state_ != msg::TrackingState::kLost && failing_s <= config_.tracker.recently_lost_s;
-  state_ = recent ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kLost;
-  relocalizer_.give_up();
-  outcome.state = relocalizer_.located() ? state_ : msg::TrackingState::kRelocalizing;
 }
 
 void Tracker::count(const LocalMapTracking& tracking) {

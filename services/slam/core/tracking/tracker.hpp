@@ -92,9 +92,10 @@ class Tracker {
 
  private:
   TrackingContext context() const { return {config_, now_ns_}; }
-  /// The way from where the map began.
-  Eigen::Isometry3d since_first(const Eigen::Isometry3d& T_world_camera) const {
-    return config_.first_pose.inverse() * T_world_camera;
+  /// What an error of the calibration adds by the way from where the map began. docs/theory/tracking.md Eq. (15).
+  geometry::Matrix6d of_calibration(const Eigen::Isometry3d& T_world_camera) const {
+    return calibration_covariance(config_.first_pose.inverse() * T_world_camera, scene_m_,
+                                  config_.sensor.calibration_error);
   }
   void adopt_pose(const LocalMap& map);
   ExpectedPose predict(const Frame& frame) const;

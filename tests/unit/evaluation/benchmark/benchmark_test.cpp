@@ -42,6 +42,13 @@ TEST(Perturbation, varies_first_frame_and_feature_count_except_for_the_first_run
   }
 }
 
+TEST(FiguresOfARun, count_a_pose_from_frame_to_frame_as_a_pose) {
+  const Figures figures = figures_of(
+      nlohmann::json::parse(R"({"frames": 100, "states": {"ok": 70, "odometry": 20, "recently lost": 10}})"));
+  EXPECT_DOUBLE_EQ(figures.at("share.odometry"), 0.2);
+  EXPECT_DOUBLE_EQ(figures.at("share.lost"), 0.1);
+}
+
 TEST(FiguresOfARun, are_its_numbers_with_shares_of_the_states_and_the_time_of_a_frame) {
   const Figures figures = figures_of(nlohmann::json::parse(
       R"({"frames": 200, "ate_m": 0.01, "recall": null, "filter_ms": 12, "slam_ms": 5,

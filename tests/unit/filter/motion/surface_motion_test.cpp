@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
 
 #include "common/geometry/se3.hpp"
@@ -33,7 +34,8 @@ class SurfaceMotionTest : public ::testing::Test {
   }
   std::optional<RelativeMotion> compare(const std::vector<PointSighting>& thing,
                                         const std::vector<PointSighting>& rest) const {
-    return relative_motion(thing, rest, camera_, Eigen::Isometry3d::Identity());
+    const auto motions = relative_motions({{0, thing}}, rest, camera_, Eigen::Isometry3d::Identity());
+    return motions.empty() ? std::nullopt : std::optional(motions.at(0));
   }
   std::mt19937_64 random_{7};
   geometry::CameraModel camera_ = test::pinhole();

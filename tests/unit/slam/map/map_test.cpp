@@ -131,16 +131,22 @@ TEST(Map, joined_component_hangs_on_the_other) {
   EXPECT_EQ(map.check_invariants(), "") << "no longer a first keyframe: it may be culled";
 }
 
+/// A keyframe with one feature, beside the one before.
+void add_view(Map& map, const msg::Feature& feature) {
+  auto frame = std::make_shared<Frame>();
+  frame->features.push_back(feature);
+  const auto k = static_cast<KeyframeId>(map.keyframes().size());
+  map.add_keyframe(frame, moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+}
+
 TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
   Map map;
   for (std::uint32_t k = 0; k < 3; ++k) {
-    auto frame = std::make_shared<Frame>();
     msg::Feature feature{};
     feature.static_probability = k == 0 ? 0.1F : 0.7F;
     feature.descriptor.fill(k == 1 ? 0xFF : 0x00);  // the second view is unlike the others
     feature.octave = 2;
-    frame->features.push_back(feature);
-    map.add_keyframe(frame, moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+    add_view(map, feature);
   }
   const LandmarkId id = map.add_landmark({0, 0, 2}, {1, 0});
   map.add_observation(id, {0, 0});
@@ -156,12 +162,10 @@ TEST(Map, landmark_carries_mean_probability_and_typical_descriptor) {
 TEST(Map, landmark_is_in_question_until_a_keyframe_sees_it_when_it_is_not) {
   Map map;
   for (std::uint32_t k = 0; k < 2; ++k) {
-    auto frame = std::make_shared<Frame>();
     msg::Feature feature{};
     feature.static_probability = k == 0 ? 0.5F : 0.9F;
     feature.flags = k == 0 ? msg::kFeatureInQuestion : 0;
-    frame->features.push_back(feature);
-    map.add_keyframe(frame, moved_right(0.1 * k), k == 0 ? kNoKeyframe : k - 1);
+    add_view(map, feature);
   }
   const msg::Feature& doubted = map.find_keyframe(0)->frame->features[0];
   const msg::Feature& known = map.find_keyframe(1)->frame->features[0];

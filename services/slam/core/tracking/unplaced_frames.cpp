@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "common/msg/stamps.hpp"
+#include "services/slam/core/tracking/tracker.hpp"
+
+/// What the tracker does with a frame whose place in the map is not found.
+namespace rtd::slam {
+
+/// What the last frame saw may be enough for the motion since then, though not for a place in the map. Errors add up.
+/// docs/theory/tracking.md, "Odometry".
+bool Tracker::continue_without_map(TrackOutcome& outcome, const FramePtr& frame) {
+  constexpr int kMinPoints = 20;
+  constexpr std::size_t kYoungKeyframes = 20;  // such a map may not show yet what was seen a moment ago
+  const bool young = outcome.map->component_keyframes < kYoungKeyframes;
+  if (!young || !msg::has_pose(state_) || follows_prior(*frame)) return false;
+  LocalMapTracking tracking;
+  tracking.guess = track_motion(*frame, last_, *outcome.map, predict(*frame), context());
+  if (tracking.guess.points < kMinPoints || !continues_motion(*frame, tracking.guess.T_world_camera)) return false;
+  follow(frame, *outcome.map, tracking);
+  failing_since_ns_.reset();
+  outcome.tracked = last_;
+  outcome.inliers = tracking.guess.points;
+  outcome.state = state_ = msg::TrackingState::kOdometry;
+  outcome.consistency = consistency_.value();
+  covariance_ += config_.sensor.shared_error * tracking.guess.covariance;
+  outcome.covariance = covariance_ + of_calibration(last_.T_world_camera);
+  return true;
+}
+
+/// Too little was found: predicts for a moment, or tracking is lost. A pose from few landmarks that agrees with the
+/// prediction is better than the prediction alone.
+void Tracker::reject(TrackOutcome& outcome, const FramePtr& frame_in_work, const PoseGuess& weak) {
+  if (claim_prior(outcome, frame_in_work, weak)) return;
+  const Frame& frame = *frame_in_work;
+  if (auto claimed = hold(frame)) {
+    const PredictedPose measured{weak.T_world_camera, weak.covariance};
+    const bool usable = weak.success && weak.inliers >= config_.prediction.min_weak_inliers;
+    if (usable && measured.covariance.trace() < claimed->covariance.trace() &&
+        pose_distance2(*claimed, measured) < kMaxPoseDistance2) {
+      claimed = measured;
+    }
+    outcome.tracked.T_world_camera = claimed->T_world_camera;
+    outcome.covariance =
+        config_.sensor.shared_error * claimed->covariance + map_covariance_ + of_calibration(claimed->T_world_camera);
+    outcome.state = state_ = msg::TrackingState::kPredicted;
+    return;
+  }
+  if (!failing_since_ns_) failing_since_ns_ = frame.stamp_ns;
+  const double failing_s = msg::minus_s(frame.stamp_ns, *failing_since_ns_);
+  motion_.reset();
+  const bool recent = state_ != msg::TrackingState::kLost && failing_s <= config_.tracker.recently_lost_s;
+  state_ = recent ? msg::TrackingState::kRecentlyLost : msg::TrackingState::kLost;
+  relocalizer_.give_up();
+  outcome.state = relocalizer_.located() ? state_ : msg::TrackingState::kRelocalizing;
+}
+
+}  // namespace rtd::slam
