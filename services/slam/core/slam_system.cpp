@@ -19,8 +19,9 @@ std::string problem_of(const TrackOutcome& outcome, int needed) {
   if (outcome.at_place()) return state + ": a place was recognised, the next frames have to agree";
   if (outcome.state == State::kOk) return "";
   if (outcome.state == State::kDoubtful)
-    return state + ": only " + std::to_string(std::lround(100 * outcome.consistency)) +
-           " % of the matched landmarks agree closely with the pose; it may follow something that moves";
+    return state + ": " + std::to_string(std::lround(100 * outcome.consistency)) +
+           " % of the matched landmarks agree closely with the pose, which is known to " +
+           std::to_string(std::lround(1e3 * outcome.sigma_m)) + " mm; it may follow something that moves";
   if (outcome.state == State::kOdometry)
     return state + ": the map is not recognised; " + found +
            " points of the last frame give the motion since then, and errors add up";

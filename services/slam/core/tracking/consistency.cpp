@@ -35,13 +35,21 @@ double median_residual(const Frame& frame, const LocalMap& map, const PoseGuess&
 }  // namespace
 
 void Consistency::add(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking, double elapsed_s) {
-  constexpr double kHysteresis = 1.1;
   const double matched = tracking.guess.inliers + static_cast<double>(tracking.rejected.size());
   if (matched < kMinMatches) return;
   const double residual = median_residual(frame, map, tracking.guess);
   const double now = tracking.guess.inliers / matched * std::min(1.0, kUsualResidual / std::max(residual, 1e-3));
   value_ += (1 - std::exp(-std::max(elapsed_s, 0.0) / config_.memory_s)) * (now - value_);
-  doubtful_ = value_ < config_.doubtful_below * (doubtful_ ? kHysteresis : 1.0);
+}
+
+bool Consistency::doubts(double sigma_m) {
+  constexpr double kHysteresis = 1.1;
+  constexpr double kLargest_m = 0.02;  // 2.5 of them are the 5 cm of docs/integrity.md
+  constexpr double kAgreement = 0.7, kGrows = 6;
+  if (config_.doubtful_below == 0) return false;
+  contradicted_ = value_ < config_.doubtful_below * (contradicted_ ? kHysteresis : 1.0);
+  uncertain_ = sigma_m * std::exp(kGrows * (kAgreement - value_)) > kLargest_m / (uncertain_ ? kHysteresis : 1.0);
+  return contradicted_ || uncertain_;
 }
 
 geometry::Matrix6d Consistency::covariance(double scene_m) const {
@@ -57,7 +65,7 @@ geometry::Matrix6d Consistency::covariance(double scene_m) const {
 
 void Consistency::reset() {
   value_ = kStart;
-  doubtful_ = false;
+  contradicted_ = uncertain_ = false;
 }
 
 }  // namespace rtd::slam

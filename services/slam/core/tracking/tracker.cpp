@@ -229,10 +229,11 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   scene_m_ = median_distance(*outcome.map, last_);
   const bool had_pose = msg::has_pose(state_);
   state_ = msg::TrackingState::kOk;
-  outcome.state = consistency_.doubtful() ? msg::TrackingState::kDoubtful : state_;
   outcome.consistency = consistency_.value();
   const geometry::Matrix6d local =
       config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
+  outcome.sigma_m = geometry::largest_sigma(local.topLeftCorner<3, 3>());
+  outcome.state = consistency_.doubts(outcome.sigma_m) ? msg::TrackingState::kDoubtful : state_;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
   if (prior_ != nullptr && !weighed_) report_to_prior(local, had_pose);
