@@ -20,8 +20,8 @@ class Consistency {
   void add(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking, double elapsed_s);
   /// 1: everything that was matched agrees; below ConsistencyConfig::doubtful_below the pose is doubtful.
   double value() const { return value_; }
-  /// Whether the last frame's pose is doubtful: value() is below doubtful_below, or its standard deviation (m, along the
-  /// worst axis), the larger the less agrees, exceeds 2 cm. Eq. (18). Doubt ends a tenth beyond both limits.
+  /// Whether the last frame's pose is doubtful: value() is below doubtful_below, or its standard deviation (m, along
+  /// the worst axis), the larger the less agrees, exceeds 2 cm. Eq. (18). Doubt ends a tenth beyond both limits.
   bool doubts(double sigma_m);
   /// What the contradictions add to the covariance of a pose, (x y z rx ry rz), in a scene at `scene_m`. Eq. (17).
   geometry::Matrix6d covariance(double scene_m) const;
