@@ -46,14 +46,14 @@ cv::Rect2f box_in_frame(const Candidate& candidate, const Letterbox& letterbox, 
 
 Detector::Detector(DetectorConfig config) {
   cv::setNumThreads(config.threads);
-  network_ = std::make_unique<YoloNetwork>(std::move(config));
+  network_ = std::make_unique<Network>(std::move(config));
 }
 
 std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   if (color_bgr.empty()) return {};
   const cv::Mat image = to_bgr(color_bgr);
   const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
-  fill_blob(image, letterbox, network_->input(), blob_);
+  fill_blob(image, letterbox, network_->input(), network_->pixels(), blob_);
   return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, letterbox, image.size()); });
 }
 
@@ -61,7 +61,7 @@ std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr
   if (roll_rad == 0 || color_bgr.empty()) return detect(color_bgr);
   const cv::Mat image = to_bgr(color_bgr);
   const UprightView view = fit_upright(image.size(), network_->input(), roll_rad);
-  fill_upright_blob(image, view, blob_);
+  fill_upright_blob(image, view, network_->pixels(), blob_);
   return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, view); });
 }
 
@@ -78,7 +78,7 @@ std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<con
     if (images[i].empty()) throw std::invalid_argument("detector: an image of the batch is empty");
     letterboxes.push_back(fit_letterbox(images[i].size(), input));
     cv::Mat blob(std::vector<int>{1, 3, input.height_px, input.width_px}, CV_32F, batch_.ptr(static_cast<int>(i)));
-    fill_blob(to_bgr(images[i]), letterboxes.back(), input, blob);
+    fill_blob(to_bgr(images[i]), letterboxes.back(), input, network_->pixels(), blob);
   }
   std::vector<std::vector<vision::Detection>> found;
   if (images.empty()) return found;
@@ -87,22 +87,20 @@ std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<con
     const auto box_of = [&](const Candidate& candidate) {
       return box_in_frame(candidate, letterboxes[i], images[i].size());
     };
-    found.push_back(boxes_of(network_->heads_of(static_cast<int>(i)), box_of));
+    found.push_back(boxes_of(static_cast<int>(i), box_of));
   }
   return found;
 }
 
 std::vector<vision::Detection> Detector::find_in_blob(const BoxInFrame& box_of) {
-  return boxes_of(network_->infer(blob_), box_of);
+  network_->infer(blob_);
+  return boxes_of(0, box_of);
 }
 
-std::vector<vision::Detection> Detector::boxes_of(const std::vector<HeadLogits>& heads,
-                                                  const BoxInFrame& box_of) const {
+std::vector<vision::Detection> Detector::boxes_of(int image, const BoxInFrame& box_of) const {
   const DetectorConfig& config = network_->config();
-  const int class_count = static_cast<int>(config.class_names.size());
   std::vector<vision::Detection> detections;
-  for (const Candidate& candidate :
-       suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode)) {
+  for (const Candidate& candidate : suppress_non_maxima(network_->candidates(image), config.decode)) {
     const cv::Rect2f box = box_of(candidate);
     if (box.empty()) continue;
     const std::string& name = config.class_names[static_cast<std::size_t>(candidate.class_index)];

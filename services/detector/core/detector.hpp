@@ -9,15 +9,16 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "services/detector/core/yolo_network.hpp"
+#include "services/detector/core/network.hpp"
 
 namespace rtd::detector {
 
-/// YOLOv5 / YOLOv5-Lite on one of the engines (engine.hpp). Not thread-safe; one instance per thread.
+/// A network of one of the families (decoders/decoder.hpp) on one of the engines (engine.hpp). Not thread-safe; one
+/// instance per thread.
 class Detector {
  public:
   /// Loads the network and runs it once, so that the first detect() is as fast as the others.
-  /// Throws ModelError when the file is missing, broken, or no network of the configured shape; EngineError when the
+  /// Throws ModelError when the file is missing, broken, or of no known kind; EngineError when the
   /// engine or its device is not there.
   explicit Detector(DetectorConfig config);
 
@@ -33,6 +34,8 @@ class Detector {
   std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
 
   InputSize input_size() const { return network_->input(); }
+  /// The family of the network, for people: "YOLOX".
+  const std::string& family() const { return network_->family(); }
   /// What computes the network, for people.
   const std::string& device() const { return network_->device(); }
   /// The configuration in force, with class names and heads filled in.
@@ -41,9 +44,9 @@ class Detector {
  private:
   using BoxInFrame = std::function<cv::Rect2f(const Candidate&)>;
   std::vector<vision::Detection> find_in_blob(const BoxInFrame& box_of);
-  std::vector<vision::Detection> boxes_of(const std::vector<HeadLogits>& heads, const BoxInFrame& box_of) const;
+  std::vector<vision::Detection> boxes_of(int image, const BoxInFrame& box_of) const;
 
-  std::unique_ptr<YoloNetwork> network_;
+  std::unique_ptr<Network> network_;
   cv::Mat blob_, batch_;
 };
 

@@ -37,14 +37,14 @@ struct DecodeConfig {
 
 /// Everything the detector needs.
 struct DetectorConfig {
-  std::string model_path;  ///< ONNX file with one raw output per head (services/detector/README.md)
+  std::string model_path;  ///< ONNX file of a known family (services/detector/README.md)
   int input_width_px = 640, input_height_px = 480;
   DecodeConfig decode;
   int threads = 1;
   std::string engine = "cpu";  ///< parse_engine()
   std::string kernel_cache;    ///< folder for what an OpenCL driver compiles; empty: none
   std::vector<std::string> class_names;
-  std::vector<HeadLayout> heads;  ///< empty: those in the file, else those of YOLOv5 as published
+  std::vector<HeadLayout> heads;  ///< YOLOv5; empty: those in the file, else as published
 
   void bind(auto& binder) {
     binder.field("input_width_px", input_width_px, {32, 4096}, "network input, when the file does not fix it");

@@ -119,7 +119,7 @@ class HalvingEngine final : public Engine {
   const std::string& device() const override { return device_; }
   std::size_t outputs() const override { return engine_->outputs(); }
 
-  const std::vector<RawHead>& infer(const cv::Mat& blob) override {
+  const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
     while (true) {
       const int images = blob.size[0];
       try {
@@ -135,33 +135,44 @@ class HalvingEngine final : public Engine {
   }
 
  private:
-  const std::vector<RawHead>& infer_in_parts(const cv::Mat& blob) {
-    logits_.assign(outputs(), {});
-    heads_.assign(outputs(), {});
+  const std::vector<RawOutput>& infer_in_parts(const cv::Mat& blob) {
+    values_.assign(outputs(), {});
+    outputs_.assign(outputs(), {});
     for (int first = 0; first < blob.size[0]; first += most_) {
-      const std::vector<RawHead>& heads = engine_->infer(part_of(blob, first, std::min(most_, blob.size[0] - first)));
-      for (std::size_t i = 0; i < heads.size(); ++i) append(heads[i], i);
+      const std::vector<RawOutput>& part = engine_->infer(part_of(blob, first, std::min(most_, blob.size[0] - first)));
+      for (std::size_t i = 0; i < part.size(); ++i) append(part[i], i);
     }
-    for (std::size_t i = 0; i < heads_.size(); ++i) heads_[i].logits = logits_[i].empty() ? nullptr : logits_[i].data();
-    return heads_;
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+      outputs_[i].values = values_[i].empty() ? nullptr : values_[i].data();
+    return outputs_;
   }
 
-  void append(const RawHead& head, std::size_t i) {
-    if (head.logits == nullptr) return;
-    logits_[i].insert(logits_[i].end(), head.logits, head.of(head.images));
-    const int before = heads_[i].images;
-    heads_[i] = head;
-    heads_[i].images = before + head.images;
+  void append(const RawOutput& output, std::size_t i) {
+    if (output.values == nullptr) return;
+    for (int image = 0; image < output.images(); ++image) {
+      const std::span<const float> values = output.of(image);
+      values_[i].insert(values_[i].end(), values.begin(), values.end());
+    }
+    const int before = outputs_[i].images();
+    outputs_[i] = output;
+    outputs_[i].shape.front() += before;
   }
 
   const std::unique_ptr<Engine> engine_;
   std::string device_;
   int most_ = 0;                            ///< images at a time; 0: any number
-  std::vector<std::vector<float>> logits_;  ///< of each output
-  std::vector<RawHead> heads_;
+  std::vector<std::vector<float>> values_;  ///< of each output
+  std::vector<RawOutput> outputs_;
 };
 
 }  // namespace
+
+std::span<const float> RawOutput::of(int image) const {
+  if (image < 0 || image >= images()) throw std::out_of_range("the network has no image " + std::to_string(image));
+  std::size_t count = 1;
+  for (std::size_t i = 1; i < shape.size(); ++i) count *= static_cast<std::size_t>(shape[i]);
+  return {values + static_cast<std::size_t>(image) * count, count};
+}
 
 EngineChoice parse_engine(const std::string& text) {
   if (text == "auto") return {Kind::kAuto, {}};

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// What computes a network. Knows neither DDS nor classes nor boxes.
+/// What computes a network. Knows neither DDS nor classes, boxes or anchors.
 namespace rtd::detector {
 
 /// OpenCV's DNN module takes only Intel's GPUs unless this variable is 1 in the environment that the program starts
@@ -47,21 +47,29 @@ struct EngineChoice {
 /// (common/msg/engine_names.hpp). Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
 
+/// An output whose last layer need not be computed everywhere. Its planes come in groups; of a cell, the planes of a
+/// group are looked at only where the group's plane `gate_plane` reaches `least`.
+struct GatedOutput {
+  int planes = 0, group_planes = 1, gate_plane = 0;
+  float least = 0;
+};
+
 /// A network as an engine takes it.
 struct EngineModel {
   std::span<const std::uint8_t> onnx;
-  int planes = 0, planes_per_anchor = 0;  ///< of each head's output
-  /// The planes of cells whose objectness does not reach it need not be computed but for the objectness.
-  float min_objectness_logit = 0;
+  GatedOutput gated;         ///< outputs of exactly so many planes; 0: none
   int threads = 1;           ///< of the CPU
   std::string kernel_cache;  ///< folder where OpenCL keeps what it has compiled and tuned; empty: none
 };
 
-/// One output for all images: images x planes x rows x cols logits.
-struct RawHead {
-  const float* logits = nullptr;
-  int images = 0, planes = 0, rows = 0, cols = 0;
-  const float* of(int image) const { return logits + static_cast<std::ptrdiff_t>(image) * planes * rows * cols; }
+/// One output for all images: a tensor of floats, row-major, whose first dimension is the image.
+struct RawOutput {
+  const float* values = nullptr;
+  std::vector<int> shape;  ///< empty: the output is not such a tensor
+
+  int images() const { return shape.empty() ? 0 : shape.front(); }
+  /// The numbers of one image, 0 to images() - 1.
+  std::span<const float> of(int image) const;
 };
 
 /// The device() of the engine cpu.
@@ -75,10 +83,9 @@ class Engine {
   virtual const std::string& device() const = 0;
   /// Outputs of the network.
   virtual std::size_t outputs() const = 0;
-  /// Runs the network on a blob (CV_32F, N x 3 x H x W, RGB / 255). The order of the outputs is the engine's own, but
-  /// always the same. Outputs that are no float tensor of four dimensions
-  /// have no logits. Valid until the next call. Throws cv::Exception for a network that cannot be run.
-  virtual const std::vector<RawHead>& infer(const cv::Mat& blob) = 0;
+  /// Runs the network on a blob (CV_32F, N x 3 x H x W). The order of the outputs is the engine's own, but always the
+  /// same. Valid until the next call. Throws cv::Exception for a network that cannot be run.
+  virtual const std::vector<RawOutput>& infer(const cv::Mat& blob) = 0;
 };
 
 /// Loads a network. Throws EngineError when the engine or its device is not there or the engine lacks an operator,

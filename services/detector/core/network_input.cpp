@@ -11,24 +11,28 @@
 namespace rtd::detector {
 namespace {
 
-constexpr float kPixelScale = 1.0F / 255.0F;
-constexpr int kGreyLevel = 114;  // what the YOLOv5 family was trained with
-constexpr float kGrey = kGreyLevel * kPixelScale;
+constexpr int kGreyLevel = 114;  // what YOLOv5 and YOLOX were trained with
 
-void split_to_rgb(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, float* blob) {
+/// The grey around the frame.
+void fill_grey(InputSize input, const PixelFormat& pixels, float* blob) {
+  const std::size_t plane = static_cast<std::size_t>(input.width_px) * static_cast<std::size_t>(input.height_px);
+  for (std::size_t c = 0; c < pixels.scale.size(); ++c)
+    std::fill_n(blob + c * plane, plane, (kGreyLevel - pixels.offset[c]) * pixels.scale[c]);
+}
+
+void split_channels(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, const PixelFormat& pixels,
+                    float* blob) {
   const std::size_t plane = static_cast<std::size_t>(input.width_px) * static_cast<std::size_t>(input.height_px);
   for (int row = 0; row < color_bgr.rows; ++row) {
     const std::uint8_t* const bgr = color_bgr.ptr<std::uint8_t>(row);
     const auto offset =
         static_cast<std::size_t>(row + letterbox.pad_top_px) * static_cast<std::size_t>(input.width_px) +
         static_cast<std::size_t>(letterbox.pad_left_px);
-    float* const red = blob + offset;
-    float* const green = red + plane;
-    float* const blue = green + plane;
-    for (int col = 0; col < color_bgr.cols; ++col) {
-      blue[col] = static_cast<float>(bgr[3 * col]) * kPixelScale;
-      green[col] = static_cast<float>(bgr[3 * col + 1]) * kPixelScale;
-      red[col] = static_cast<float>(bgr[3 * col + 2]) * kPixelScale;
+    for (std::size_t c = 0; c < pixels.scale.size(); ++c) {
+      const std::uint8_t* const from = bgr + (pixels.rgb ? 2 - c : c);
+      float* const to = blob + c * plane + offset;
+      const float minus = pixels.offset[c], scale = pixels.scale[c];
+      for (int col = 0; col < color_bgr.cols; ++col) to[col] = (static_cast<float>(from[3 * col]) - minus) * scale;
     }
   }
 }
@@ -56,14 +60,15 @@ Letterbox fit_letterbox(cv::Size frame, InputSize input) {
   return letterbox;
 }
 
-void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, cv::Mat& blob) {
+void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, const PixelFormat& pixels,
+               cv::Mat& blob) {
   const std::array<int, 4> shape = {1, 3, input.height_px, input.width_px};
   blob.create(static_cast<int>(shape.size()), shape.data(), CV_32F);
   const cv::Size scaled_size(letterbox.width_px, letterbox.height_px);
-  if (scaled_size != cv::Size(input.width_px, input.height_px)) blob.setTo(kGrey);
+  if (scaled_size != cv::Size(input.width_px, input.height_px)) fill_grey(input, pixels, blob.ptr<float>());
   cv::Mat scaled = color_bgr;
   if (color_bgr.size() != scaled_size) cv::resize(color_bgr, scaled, scaled_size, 0, 0, cv::INTER_LINEAR);
-  split_to_rgb(scaled, letterbox, input, blob.ptr<float>());
+  split_channels(scaled, letterbox, input, pixels, blob.ptr<float>());
 }
 
 UprightView fit_upright(cv::Size frame, InputSize input, double roll_rad) {
@@ -74,12 +79,12 @@ UprightView fit_upright(cv::Size frame, InputSize input, double roll_rad) {
   return view;
 }
 
-void fill_upright_blob(const cv::Mat& color_bgr, const UprightView& view, cv::Mat& blob) {
+void fill_upright_blob(const cv::Mat& color_bgr, const UprightView& view, const PixelFormat& pixels, cv::Mat& blob) {
   const cv::Size size(view.input.width_px, view.input.height_px);
   cv::Mat upright;
   cv::warpAffine(color_bgr, upright, to_input(view), size, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
                  cv::Scalar::all(kGreyLevel));
-  fill_blob(upright, fit_letterbox(size, view.input), view.input, blob);
+  fill_blob(upright, fit_letterbox(size, view.input), view.input, pixels, blob);
 }
 
 cv::Rect2f box_in_frame(const Candidate& candidate, const UprightView& view) {

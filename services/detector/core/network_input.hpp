@@ -4,9 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "common/vision/detection.hpp"
-#include "services/detector/core/onnx_file.hpp"
-#include "services/detector/core/yolo_decoder.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 namespace rtd::detector {
 
@@ -21,9 +19,10 @@ struct Letterbox {
 /// Both sizes must be positive.
 Letterbox fit_letterbox(cv::Size frame, InputSize input);
 
-/// Fills `blob` (CV_32F, 1x3xHxW, allocated when needed) with the letterboxed frame as RGB / 255.
+/// Fills `blob` (CV_32F, 1x3xHxW, allocated when needed) with the letterboxed frame in this format.
 /// `color_bgr` is CV_8UC3 of the size that `letterbox` was made for.
-void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, cv::Mat& blob);
+void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize input, const PixelFormat& pixels,
+               cv::Mat& blob);
 
 /// How a frame lies in the network's input when it is turned upright: turned about its centre, shrunk until all of it
 /// fits, centred, the rest grey.
@@ -39,7 +38,7 @@ struct UprightView {
 UprightView fit_upright(cv::Size frame, InputSize input, double roll_rad);
 
 /// Fills `blob` as fill_blob() does. Turning and shrinking are one step: 1 ms for 640x480.
-void fill_upright_blob(const cv::Mat& color_bgr, const UprightView& view, cv::Mat& blob);
+void fill_upright_blob(const cv::Mat& color_bgr, const UprightView& view, const PixelFormat& pixels, cv::Mat& blob);
 
 /// The axis-parallel box in the frame, clipped to it, around the ellipse that fills `candidate`. The corners of an
 /// upright box are background: a box around the turned corners would hold up to twice the area (w = h, 45 degrees),

@@ -169,21 +169,21 @@ class OnnxruntimeEngine final : public Engine {
   const std::string& device() const override { return device_; }
   std::size_t outputs() const override { return outputs_.size(); }
 
-  const std::vector<RawHead>& infer(const cv::Mat& blob) override {
+  const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
     const Owned<OrtValue> input = tensor_of(blob);
     const OrtValue* const given = input.get();
     const char* const input_name = inputs_.front().c_str();
     std::vector<const char*> output_names;
     for (const std::string& name : outputs_) output_names.push_back(name.c_str());
     std::vector<OrtValue*> made(outputs_.size(), nullptr);
-    heads_.clear();
+    tensors_.clear();
     results_.clear();
     OrtStatus* const status = api_.Run(session_.get(), nullptr, &input_name, &given, 1, output_names.data(),
                                        output_names.size(), made.data());
     for (OrtValue* value : made) results_.emplace_back(value, api_.ReleaseValue);
     require(api_, status, "compute this network");
-    for (const Owned<OrtValue>& result : results_) heads_.push_back(head_of(result.get()));
-    return heads_;
+    for (const Owned<OrtValue>& result : results_) tensors_.push_back(output_of(result.get()));
+    return tensors_;
   }
 
  private:
@@ -198,7 +198,7 @@ class OnnxruntimeEngine final : public Engine {
     return {tensor, api_.ReleaseValue};
   }
 
-  RawHead head_of(OrtValue* value) const {
+  RawOutput output_of(OrtValue* value) const {
     const std::string task = "give its outputs";
     OrtTensorTypeAndShapeInfo* made = nullptr;
     require(api_, api_.GetTensorTypeAndShape(value, &made), task);
@@ -207,13 +207,14 @@ class OnnxruntimeEngine final : public Engine {
     std::size_t dimensions = 0;
     require(api_, api_.GetTensorElementType(made, &type), task);
     require(api_, api_.GetDimensionsCount(made, &dimensions), task);
-    std::array<std::int64_t, 4> sides{};
-    if (type != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT || dimensions != sides.size()) return {};
+    if (type != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT || dimensions == 0) return {};
+    std::vector<std::int64_t> sides(dimensions);
     require(api_, api_.GetDimensions(made, sides.data(), sides.size()), task);
-    void* logits = nullptr;
-    require(api_, api_.GetTensorMutableData(value, &logits), task);
-    const auto side = [&](std::size_t axis) { return static_cast<int>(sides[axis]); };
-    return {static_cast<const float*>(logits), side(0), side(1), side(2), side(3)};
+    void* values = nullptr;
+    require(api_, api_.GetTensorMutableData(value, &values), task);
+    RawOutput output{static_cast<const float*>(values), {}};
+    for (const std::int64_t side : sides) output.shape.push_back(static_cast<int>(side));
+    return output;
   }
 
   const OrtApi& api_;
@@ -222,7 +223,7 @@ class OnnxruntimeEngine final : public Engine {
   const std::string device_;
   Owned<OrtMemoryInfo> memory_;
   std::vector<Owned<OrtValue> > results_;
-  std::vector<RawHead> heads_;
+  std::vector<RawOutput> tensors_;
 };
 
 }  // namespace

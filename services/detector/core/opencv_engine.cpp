@@ -12,8 +12,6 @@
 namespace rtd::detector {
 namespace {
 
-constexpr std::size_t kObjectnessPlane = 4;
-
 /// A 1x1 convolution of step 1 over all channels, with float weights.
 bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
   const auto all_one = [](const std::vector<std::size_t>& sizes) {
@@ -27,11 +25,7 @@ bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
 class OpencvEngine final : public Engine {
  public:
   OpencvEngine(const EngineModel& model, std::string device, std::optional<cv::ocl::OpenCLExecutionContext> opencl)
-      : planes_(model.planes),
-        planes_per_anchor_(model.planes_per_anchor),
-        gate_(model.min_objectness_logit),
-        device_(std::move(device)),
-        opencl_(std::move(opencl)) {
+      : gated_(model.gated), device_(std::move(device)), opencl_(std::move(opencl)) {
     const FastSigmoidScope fast_sigmoid;
     net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(model.onnx.data()), model.onnx.size());
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
@@ -42,21 +36,21 @@ class OpencvEngine final : public Engine {
 
   const std::string& device() const override { return device_; }
   std::size_t outputs() const override { return branches_.size(); }
-  const std::vector<RawHead>& infer(const cv::Mat& blob) override {
+  const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
     std::optional<cv::ocl::OpenCLExecutionContextScope> device_scope;  // of this thread
     if (opencl_) device_scope.emplace(*opencl_);
     net_.setInput(blob);
-    net_.forward(outputs_, layer_names_);
-    heads_.clear();
-    for (std::size_t i = 0; i < branches_.size(); ++i) heads_.push_back(head_of(branches_[i], outputs_[i]));
-    return heads_;
+    net_.forward(mats_, layer_names_);
+    tensors_.clear();
+    for (std::size_t i = 0; i < branches_.size(); ++i) tensors_.push_back(output_of(branches_[i], mats_[i]));
+    return tensors_;
   }
 
  private:
   /// One output of the network.
   struct Branch {
     std::string layer;                  ///< whose output OpenCV computes: the head's input, or the output itself
-    std::optional<PointwiseHead> head;  ///< computed here when the head is a 1x1 convolution
+    std::optional<PointwiseHead> head;  ///< computed here when the output is gated and its layer a 1x1 convolution
     std::vector<float> logits;
   };
 
@@ -74,95 +68,97 @@ class OpencvEngine final : public Engine {
       return branch;
     const cv::Mat& weights = convolution->blobs[0];
     const cv::Mat& bias = convolution->blobs[1];
-    if (!is_pointwise(*convolution) || weights.size[0] != planes_ || static_cast<int>(bias.total()) != planes_)
+    if (!is_pointwise(*convolution) || weights.size[0] != gated_.planes ||
+        static_cast<int>(bias.total()) != gated_.planes)
       return branch;
     branch.layer = inputs[0]->name;
     branch.head.emplace(weights.ptr<float>(), std::vector<float>(bias.begin<float>(), bias.end<float>()),
-                        static_cast<std::size_t>(weights.size[1]), static_cast<std::size_t>(planes_per_anchor_));
+                        static_cast<std::size_t>(weights.size[1]), gated_);
     return branch;
   }
 
-  RawHead head_of(Branch& branch, const cv::Mat& output) const {
-    if (output.dims != 4 || output.type() != CV_32F || !output.isContinuous()) return {};
-    RawHead head{output.ptr<float>(), output.size[0], output.size[1], output.size[2], output.size[3]};
-    if (!branch.head) return head;
-    if (static_cast<std::size_t>(head.planes) != branch.head->channels()) return {};
-    const RawHead features = head;
-    const auto cells = static_cast<std::size_t>(head.rows) * static_cast<std::size_t>(head.cols);
-    head.planes = planes_;
-    branch.logits.resize(static_cast<std::size_t>(head.images) * branch.head->planes() * cells);
-    head.logits = branch.logits.data();
-    for (int image = 0; image < head.images; ++image) {
-      branch.head->evaluate(features.of(image), cells, gate_,
-                            branch.logits.data() + static_cast<std::size_t>(image) * branch.head->planes() * cells);
+  RawOutput output_of(Branch& branch, const cv::Mat& mat) const {
+    if (mat.type() != CV_32F || !mat.isContinuous()) return {};
+    RawOutput output{mat.ptr<float>(), {mat.size.p, mat.size.p + mat.dims}};
+    if (!branch.head) return output;
+    if (mat.dims != 4 || static_cast<std::size_t>(mat.size[1]) != branch.head->channels()) return {};
+    const RawOutput features = output;
+    const auto cells = static_cast<std::size_t>(mat.size[2]) * static_cast<std::size_t>(mat.size[3]);
+    const std::size_t numbers = branch.head->planes() * cells;
+    branch.logits.resize(static_cast<std::size_t>(features.images()) * numbers);
+    for (int image = 0; image < features.images(); ++image) {
+      float* const logits = branch.logits.data() + static_cast<std::size_t>(image) * numbers;
+      branch.head->evaluate(features.of(image).data(), cells, logits);
     }
-    return head;
+    output.values = branch.logits.data();
+    output.shape[1] = static_cast<int>(branch.head->planes());
+    return output;
   }
 
-  const int planes_, planes_per_anchor_;
-  const float gate_;
+  const GatedOutput gated_;
   const std::string device_;
   const std::optional<cv::ocl::OpenCLExecutionContext> opencl_;
   cv::dnn::Net net_;
   std::vector<Branch> branches_;
   std::vector<cv::String> layer_names_;
-  std::vector<cv::Mat> outputs_;
-  std::vector<RawHead> heads_;
+  std::vector<cv::Mat> mats_;
+  std::vector<RawOutput> tensors_;
 };
 
 }  // namespace
 
 PointwiseHead::PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels,
-                             std::size_t planes_per_anchor)
+                             const GatedOutput& gated)
     : channels_(channels),
-      planes_per_anchor_(planes_per_anchor),
+      group_planes_(static_cast<std::size_t>(gated.group_planes)),
+      gate_plane_(static_cast<std::size_t>(gated.gate_plane)),
+      least_(gated.least),
       bias_(std::move(bias)),
       weights_(bias_.size() * channels) {
   for (std::size_t plane = 0; plane < bias_.size(); ++plane) {
-    const std::size_t anchor = plane / planes_per_anchor, within = plane % planes_per_anchor;
+    const std::size_t group = plane / group_planes_, within = plane % group_planes_;
     for (std::size_t c = 0; c < channels; ++c) {
-      weights_[(anchor * channels + c) * planes_per_anchor + within] = weights[plane * channels + c];
+      weights_[(group * channels + c) * group_planes_ + within] = weights[plane * channels + c];
     }
   }
 }
 
-void PointwiseHead::evaluate(const float* features, std::size_t cells, float min_objectness_logit,
-                             float* logits) const {
-  evaluate_objectness(features, cells, logits);
-  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
-    float* const anchor_logits = logits + anchor * planes_per_anchor_ * cells;
-    const float* const objectness = anchor_logits + kObjectnessPlane * cells;
+void PointwiseHead::evaluate(const float* features, std::size_t cells, float* logits) const {
+  evaluate_gates(features, cells, logits);
+  for (std::size_t group = 0; group * group_planes_ < planes(); ++group) {
+    float* const group_logits = logits + group * group_planes_ * cells;
+    const float* const gates = group_logits + gate_plane_ * cells;
     for (std::size_t i = 0; i < cells; ++i) {
-      if (objectness[i] >= min_objectness_logit) evaluate_cell(features + i, cells, anchor, anchor_logits + i);
+      if (gates[i] >= least_) evaluate_cell(features + i, cells, group, group_logits + i);
     }
   }
 }
 
-void PointwiseHead::evaluate_objectness(const float* features, std::size_t cells, float* logits) const {
-  for (std::size_t anchor = 0; anchor * planes_per_anchor_ < planes(); ++anchor) {
-    const std::size_t plane = anchor * planes_per_anchor_ + kObjectnessPlane;
-    float* const objectness = logits + plane * cells;
-    std::fill_n(objectness, cells, bias_[plane]);
+void PointwiseHead::evaluate_gates(const float* features, std::size_t cells, float* logits) const {
+  for (std::size_t group = 0; group * group_planes_ < planes(); ++group) {
+    const std::size_t plane = group * group_planes_ + gate_plane_;
+    float* const gates = logits + plane * cells;
+    std::fill_n(gates, cells, bias_[plane]);
     for (std::size_t c = 0; c < channels_; ++c) {
-      const float weight = weights_[(anchor * channels_ + c) * planes_per_anchor_ + kObjectnessPlane];
+      const float weight = weights_[(group * channels_ + c) * group_planes_ + gate_plane_];
       const float* const channel = features + c * cells;
-      for (std::size_t i = 0; i < cells; ++i) objectness[i] += weight * channel[i];
+      for (std::size_t i = 0; i < cells; ++i) gates[i] += weight * channel[i];
     }
   }
 }
 
-/// All planes but the objectness of one cell; `features` and `cell_logits` point at its first channel and plane.
-void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std::size_t anchor,
+/// All planes but the gate of one cell; `features` and `cell_logits` point at its first channel and plane.
+void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std::size_t group,
                                   float* cell_logits) const {
-  const auto first_bias = bias_.begin() + static_cast<std::ptrdiff_t>(anchor * planes_per_anchor_);
-  std::vector<float> sums(first_bias, first_bias + static_cast<std::ptrdiff_t>(planes_per_anchor_));
+  const auto first_bias = bias_.begin() + static_cast<std::ptrdiff_t>(group * group_planes_);
+  std::vector<float> sums(first_bias, first_bias + static_cast<std::ptrdiff_t>(group_planes_));
   for (std::size_t c = 0; c < channels_; ++c) {
     const float feature = features[c * cells];
-    const float* const weights = weights_.data() + (anchor * channels_ + c) * planes_per_anchor_;
-    for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) sums[plane] += weights[plane] * feature;
+    const float* const weights = weights_.data() + (group * channels_ + c) * group_planes_;
+    for (std::size_t plane = 0; plane < group_planes_; ++plane) sums[plane] += weights[plane] * feature;
   }
-  for (std::size_t plane = 0; plane < planes_per_anchor_; ++plane) {
-    if (plane != kObjectnessPlane) cell_logits[plane * cells] = sums[plane];
+  for (std::size_t plane = 0; plane < group_planes_; ++plane) {
+    if (plane != gate_plane_) cell_logits[plane * cells] = sums[plane];
   }
 }
 

@@ -13,28 +13,28 @@
 
 namespace rtd::detector {
 
-/// The last layer of a detection head, a 1x1 convolution, computed only where something is. The objectness is computed
-/// for every cell, the other planes for the cells that pass: a few in ten thousand. That is a tenth of the network's
-/// time.
+/// The last layer of a gated output, a 1x1 convolution, computed only where something is. The gates are computed for
+/// every cell, the other planes for the cells that pass: a few in ten thousand. That is a tenth of the network's time.
 class PointwiseHead {
  public:
-  /// `weights` are planes x channels, row-major; planes = anchors * planes_per_anchor, objectness is the fifth of each.
-  PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels, std::size_t planes_per_anchor);
+  /// `weights` are planes x channels, row-major; there is one bias for each plane.
+  PointwiseHead(const float* weights, std::vector<float> bias, std::size_t channels, const GatedOutput& gated);
 
   std::size_t channels() const { return channels_; }
   std::size_t planes() const { return bias_.size(); }
 
-  /// `features` are channels x cells, `logits` planes x cells. Sets all objectness planes, and the other planes of the
-  /// cells whose objectness is at least min_objectness_logit; the rest of `logits` stays as it was.
-  void evaluate(const float* features, std::size_t cells, float min_objectness_logit, float* logits) const;
+  /// `features` are channels x cells, `logits` planes x cells. Sets all gates, and the other planes of the cells whose
+  /// gate is at least that of the gated output; the rest of `logits` stays as it was.
+  void evaluate(const float* features, std::size_t cells, float* logits) const;
 
  private:
-  void evaluate_objectness(const float* features, std::size_t cells, float* logits) const;
-  void evaluate_cell(const float* features, std::size_t cells, std::size_t anchor, float* cell_logits) const;
+  void evaluate_gates(const float* features, std::size_t cells, float* logits) const;
+  void evaluate_cell(const float* features, std::size_t cells, std::size_t group, float* cell_logits) const;
 
-  std::size_t channels_, planes_per_anchor_;
+  std::size_t channels_, group_planes_, gate_plane_;
+  float least_;
   std::vector<float> bias_;
-  std::vector<float> weights_;  ///< anchor, channel, plane: the planes of a cell are summed side by side
+  std::vector<float> weights_;  ///< group, channel, plane: the planes of a cell are summed side by side
 };
 
 /// OpenCV's DNN module on the CPU, or on an OpenCL device where `opencl` is given. Throws cv::Exception.

@@ -10,9 +10,8 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
+#include "services/detector/core/network.hpp"
 #include "services/detector/core/network_input.hpp"
-#include "services/detector/core/yolo_decoder.hpp"
-#include "services/detector/core/yolo_network.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -49,21 +48,20 @@ BENCHMARK(detect)->Unit(benchmark::kMillisecond)->MinTime(2);
 void preprocess(benchmark::State& state) {
   const cv::Mat image = test_image();
   cv::Mat blob;
-  for (auto _ : state) fill_blob(image, fit_letterbox(image.size(), {640, 480}), {640, 480}, blob);
+  for (auto _ : state) fill_blob(image, fit_letterbox(image.size(), {640, 480}), {640, 480}, PixelFormat(), blob);
 }
 BENCHMARK(preprocess)->Unit(benchmark::kMillisecond);
 
 void decode_and_suppress(benchmark::State& state) {
   const DetectorConfig config = config_or_skip(state);
   if (config.model_path.empty()) return;
-  YoloNetwork network(config);
+  Network network(config);
   const cv::Mat image = test_image();
   cv::Mat blob;
-  fill_blob(image, fit_letterbox(image.size(), network.input()), network.input(), blob);
-  const std::vector<HeadLogits> heads = network.infer(blob);
-  const int class_count = static_cast<int>(network.config().class_names.size());
+  fill_blob(image, fit_letterbox(image.size(), network.input()), network.input(), network.pixels(), blob);
+  network.infer(blob);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(suppress_non_maxima(decode_heads(heads, class_count, config.decode), config.decode));
+    benchmark::DoNotOptimize(suppress_non_maxima(network.candidates(0), config.decode));
   }
 }
 BENCHMARK(decode_and_suppress)->Unit(benchmark::kMillisecond);

@@ -16,7 +16,7 @@
 #include "common/msg/engine_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/engine_guard.hpp"
-#include "services/detector/core/yolo_network.hpp"
+#include "services/detector/core/network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {
@@ -57,22 +57,21 @@ class EngineTest : public ::testing::Test {
   static double difference(const DetectorConfig& config, const std::string& engine) {
     DetectorConfig other = config;
     other.engine = full_name(engine);
-    YoloNetwork cpu(config), compared(other);
+    Network cpu(config), compared(other);
     const char* const device = engine == "opencl" ? "OpenCL" : "ONNX Runtime 1.";
     EXPECT_THAT(compared.device(), HasSubstr(device));
     cv::Mat blob(std::vector<int>{1, 3, cpu.input().height_px, cpu.input().width_px}, CV_32F);
     cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
-    std::vector<HeadLogits> a = cpu.infer(blob), b = compared.infer(blob);
-    const auto by_stride = [](const HeadLogits& head) { return head.layout.stride_px; };
-    for (auto* heads : {&a, &b}) std::ranges::sort(*heads, std::ranges::less(), by_stride);  // each has its own order
+    std::vector<RawOutput> a = cpu.infer(blob), b = compared.infer(blob);
+    for (auto* heads : {&a, &b}) std::ranges::sort(*heads, {}, &RawOutput::shape);  // each has its own order
     const std::size_t planes = 5 + cpu.config().class_names.size();
     double largest = 0;
     for (std::size_t head = 0; head < a.size(); ++head) {
-      const auto cells = static_cast<std::size_t>(a[head].rows) * static_cast<std::size_t>(a[head].cols);
+      const auto cells = static_cast<std::size_t>(a[head].shape[2]) * static_cast<std::size_t>(a[head].shape[3]);
       for (std::size_t anchor = 0; anchor < 3; ++anchor) {
         const std::size_t objectness = (anchor * planes + 4) * cells;
         for (std::size_t i = objectness; i < objectness + cells; ++i)
-          largest = std::max(largest, std::abs(double{a[head].logits[i]} - b[head].logits[i]));
+          largest = std::max(largest, std::abs(double{a[head].values[i]} - b[head].values[i]));
       }
     }
     return largest;

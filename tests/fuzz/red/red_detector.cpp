@@ -10,8 +10,8 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/detector/core/camera_roll.hpp"
+#include "services/detector/core/decoders/yolov5.hpp"
 #include "services/detector/core/network_input.hpp"
-#include "services/detector/core/yolo_decoder.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"
 #include "tests/fuzz/red/small_frames.hpp"
@@ -72,8 +72,8 @@ class Attack {
   void detect(const cv::Mat& image) {
     if (image.empty()) return;
     const UprightView view = fit_upright(image.size(), kInput, roll_.roll_rad());
-    fill_blob(image, fit_letterbox(image.size(), kInput), kInput, blob_);
-    fill_upright_blob(image, view, blob_);
+    fill_blob(image, fit_letterbox(image.size(), kInput), kInput, PixelFormat(), blob_);
+    fill_upright_blob(image, view, PixelFormat(), blob_);
     const Answer answer = make_answer();
     const DecodeConfig config;
     for (const Candidate& candidate : suppress_non_maxima(decode_heads({answer.head}, kClasses, config), config)) {

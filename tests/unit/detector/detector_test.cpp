@@ -229,6 +229,28 @@ TEST_F(DetectorTest, refuses_a_model_with_other_outputs_than_one_per_stride) {
   EXPECT_THAT([&] { load(two_heads.model_path, two_heads); }, ThrowsMessage<ModelError>(HasSubstr("2 outputs")));
 }
 
+TEST_F(DetectorTest, names_the_classes_that_the_outputs_have) {
+  const DetectorConfig coco = config({});
+  EXPECT_THAT([&] { load(coco.model_path); }, ThrowsMessage<ModelError>(HasSubstr("YOLOv5 with 2 classes")));
+}
+
+TEST_F(DetectorTest, takes_the_decoder_that_the_file_names_and_no_other) {
+  const DetectorConfig named = config({.metadata = {{"rtd.decoder", "yolov5"}}});
+  EXPECT_EQ(Detector(named).family(), "YOLOv5");
+  const DetectorConfig wrong = config({.metadata = {{"rtd.decoder", "yolox"}}});
+  EXPECT_THAT([&] { load(wrong.model_path, wrong); }, ThrowsMessage<ModelError>(HasSubstr("is of no known kind")));
+  const DetectorConfig unknown = config({.metadata = {{"rtd.decoder", "detr"}}});
+  EXPECT_THAT([&] { load(unknown.model_path, unknown); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("'detr'"), HasSubstr("there are yolov5, yolox"))));
+}
+
+TEST_F(DetectorTest, refuses_an_input_that_the_strides_do_not_divide) {
+  DetectorConfig odd = config({.fixed_size = false});
+  odd.input_width_px = 100;
+  EXPECT_THAT([&] { load(odd.model_path, odd); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("100x480"), HasSubstr("multiples of 32"))));
+}
+
 TEST_F(DetectorTest, refuses_the_real_model_cut_off_anywhere) {
   const char* const folder = std::getenv("RTD_MODEL_DIR");
   if (folder == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";

@@ -18,12 +18,12 @@ class SmallDevice final : public Engine {
   SmallDevice(int room, std::vector<int>& batches) : room_(room), batches_(batches) {}
   const std::string& device() const override { return name_; }
   std::size_t outputs() const override { return 2; }
-  const std::vector<RawHead>& infer(const cv::Mat& blob) override {
+  const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
     if (blob.size[0] > room_) throw OutOfDeviceMemory("full");
     batches_.push_back(blob.size[0]);
     logits_.clear();
     for (int i = 0; i < blob.size[0]; ++i) logits_.push_back(*blob.ptr<float>(i));
-    heads_ = {{logits_.data(), blob.size[0], 1, 1, 1}, {}};
+    heads_ = {{logits_.data(), {blob.size[0], 1, 1, 1}}, {}};
     return heads_;
   }
 
@@ -32,7 +32,7 @@ class SmallDevice final : public Engine {
   std::vector<int>& batches_;
   const std::string name_ = "small";
   std::vector<float> logits_;
-  std::vector<RawHead> heads_;
+  std::vector<RawOutput> heads_;
 };
 
 cv::Mat numbered_images(int count) {
@@ -44,11 +44,11 @@ cv::Mat numbered_images(int count) {
 TEST(HalvingEngine, computes_in_parts_what_its_device_cannot_hold) {
   std::vector<int> batches;
   const auto engine = halve_when_full(std::make_unique<SmallDevice>(3, batches));
-  const std::vector<RawHead>& heads = engine->infer(numbered_images(10));
+  const std::vector<RawOutput>& heads = engine->infer(numbered_images(10));
   EXPECT_THAT(batches, ElementsAre(3, 3, 3, 1)) << "10 and 5 were too many";
-  ASSERT_EQ(heads[0].images, 10);
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(*heads[0].of(i), i);
-  EXPECT_EQ(heads[1].logits, nullptr) << "an output that is no float tensor stays so";
+  ASSERT_EQ(heads[0].images(), 10);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(heads[0].of(i).front(), i);
+  EXPECT_EQ(heads[1].values, nullptr) << "an output that is no float tensor stays so";
   EXPECT_THAT(engine->device(), HasSubstr("small, at most 3 images at once because"));
   engine->infer(numbered_images(4));
   EXPECT_THAT(batches, ElementsAre(3, 3, 3, 1, 3, 1)) << "it is remembered";
@@ -57,7 +57,7 @@ TEST(HalvingEngine, computes_in_parts_what_its_device_cannot_hold) {
 TEST(HalvingEngine, changes_nothing_while_there_is_room) {
   std::vector<int> batches;
   const auto engine = halve_when_full(std::make_unique<SmallDevice>(16, batches));
-  EXPECT_EQ(engine->infer(numbered_images(16))[0].images, 16);
+  EXPECT_EQ(engine->infer(numbered_images(16))[0].images(), 16);
   EXPECT_THAT(batches, ElementsAre(16));
   EXPECT_EQ(engine->device(), "small");
 }

@@ -57,7 +57,7 @@ TEST_P(EveryRoll, puts_pixels_where_the_boxes_are_taken_from) {
   cv::circle(image, {400, 200}, 12, cv::Scalar::all(255), cv::FILLED);
   const UprightView view = fit_upright(kFrame, kInput, roll_rad());
   cv::Mat blob;
-  fill_upright_blob(image, view, blob);
+  fill_upright_blob(image, view, PixelFormat(), blob);
 
   const cv::Mat red(kInput.height_px, kInput.width_px, CV_32F, blob.ptr<float>());
   const cv::Rect bright = cv::boundingRect(red > 0.75F);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "services/detector/core/yolo_decoder.hpp"
+#include "services/detector/core/decoders/yolov5.hpp"
 
 namespace rtd::detector {
 namespace {

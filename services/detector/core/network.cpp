@@ -1,25 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/yolo_network.hpp"
+#include "services/detector/core/network.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
-#include <stdexcept>
+#include <optional>
 #include <utility>
 
-#include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/decoders/yolov5.hpp"
 
 namespace rtd::detector {
 namespace {
-
-/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
-std::vector<HeadLayout> default_heads() {
-  return {{8, {{{10, 13}, {16, 30}, {33, 23}}}},
-          {16, {{{30, 61}, {62, 45}, {59, 119}}}},
-          {32, {{{116, 90}, {156, 198}, {373, 326}}}}};
-}
 
 constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another file with detector.model";
 
@@ -49,19 +42,24 @@ class QuietOpenCv {
   cv::utils::logging::LogLevel saved_;
 };
 
-std::string join_shape(std::initializer_list<int> sizes) {
+constexpr int kSideMultiple = 32;  // the largest stride
+
+/// What would have fitted, for people.
+std::string expectations(const NetworkFacts& facts) {
   std::string text;
-  for (const int size : sizes) {
-    if (!text.empty()) text += 'x';
-    text += std::to_string(size);
-  }
+  for (const DecoderFamily& family : decoder_families())
+    text += (text.empty() ? "" : ", ") + std::string(family.title) + " " + family.expected(facts);
   return text;
 }
 
-/// "1x255x60x80"; everything but logits of one image is "unsupported".
-std::string shape_of(const RawHead& head) {
-  if (head.logits == nullptr || head.images != 1) return "unsupported";
-  return join_shape({1, head.planes, head.rows, head.cols});
+/// ". It looks like YOLOX with 3 classes: ..." when only the number of classes does not fit.
+std::string other_classes(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
+  for (const DecoderFamily& family : decoder_families()) {
+    if (const std::optional<int> classes = family.classes_in(facts, outputs))
+      return std::string(". It looks like ") + family.title + " with " + std::to_string(*classes) +
+             " classes: name them with detector.class_names";
+  }
+  return {};
 }
 
 }  // namespace
@@ -83,38 +81,38 @@ const std::vector<std::string>& coco_class_names() {
   return names;
 }
 
-YoloNetwork::YoloNetwork(DetectorConfig config) : config_(std::move(config)) {
+Network::Network(DetectorConfig config) : config_(std::move(config)) {
   const QuietOpenCv quiet;
   try {
     load();
     infer(cv::Mat(std::vector<int>{1, 3, input_.height_px, input_.width_px}, CV_32F, cv::Scalar(0)));
+    choose_decoder();
   } catch (const cv::Exception& error) {
     fail(config_.model_path, "is broken or not understood by OpenCV (" + std::string(error.err) + ")");
   }
 }
 
-void YoloNetwork::load() {
+void Network::load() {
   const std::vector<std::uint8_t> bytes = read_bytes(config_.model_path);
   const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
   if (!file.has_graph) fail(config_.model_path, "is not an ONNX model, or is cut off");
   complete_config(file);
   free_batch_ = file.free_batch;
   input_ = file.input.value_or(InputSize{config_.input_width_px, config_.input_height_px});
-  const int planes = static_cast<int>(HeadLayout{}.anchors.size()) * planes_per_anchor();
+  if (input_.width_px % kSideMultiple != 0 || input_.height_px % kSideMultiple != 0) {
+    fail(config_.model_path, "has an input of " + std::to_string(input_.width_px) + "x" +
+                                 std::to_string(input_.height_px) + " px, of which both must be multiples of " +
+                                 std::to_string(kSideMultiple));
+  }
+  const int class_count = static_cast<int>(config_.class_names.size());
   engine_ = make_engine(parse_engine(config_.engine), {.onnx = bytes,
-                                                       .planes = planes,
-                                                       .planes_per_anchor = planes_per_anchor(),
-                                                       .min_objectness_logit = objectness_gate(config_.decode),
+                                                       .gated = yolov5_gate(class_count, config_.decode),
                                                        .threads = config_.threads,
                                                        .kernel_cache = config_.kernel_cache});
-  if (engine_->outputs() != config_.heads.size()) {
-    fail(config_.model_path, "has " + std::to_string(engine_->outputs()) + " outputs, expected " +
-                                 std::to_string(config_.heads.size()) + " (one per stride)");
-  }
 }
 
-/// What is not configured comes from the file's metadata, else from the family's defaults.
-void YoloNetwork::complete_config(const OnnxFile& file) {
+/// What is not configured comes from the file's metadata, else from the families' defaults.
+void Network::complete_config(const OnnxFile& file) {
   const auto metadata = [&file](const char* key) {
     const auto found = file.metadata.find(key);
     return found == file.metadata.end() ? std::string() : found->second;
@@ -122,45 +120,37 @@ void YoloNetwork::complete_config(const OnnxFile& file) {
   if (config_.class_names.empty()) config_.class_names = split_lines(metadata("rtd.class_names"));
   if (config_.class_names.empty()) config_.class_names = coco_class_names();
   if (config_.heads.empty()) config_.heads = parse_heads(metadata("rtd.heads"));
-  if (config_.heads.empty()) config_.heads = default_heads();
+  if (config_.heads.empty()) config_.heads = yolov5_heads();
+  wanted_decoder_ = metadata("rtd.decoder");
 }
 
-const std::vector<HeadLogits>& YoloNetwork::infer(const cv::Mat& blob) {
-  raw_ = &engine_->infer(blob);
-  if (layouts_.empty()) assign_layouts(*raw_);
-  return heads_of(0);
-}
-
-const std::vector<HeadLogits>& YoloNetwork::heads_of(int image) {
-  heads_.clear();
-  for (std::size_t i = 0; i < raw_->size(); ++i) {
-    const RawHead& head = (*raw_)[i];
-    if (image >= head.images) throw std::out_of_range("the network has no image " + std::to_string(image));
-    heads_.push_back({head.of(image), head.rows, head.cols, layouts_[i]});
+void Network::choose_decoder() {
+  const NetworkFacts facts{input_, static_cast<int>(config_.class_names.size()), config_.heads};
+  bool known = wanted_decoder_.empty();
+  for (const DecoderFamily& family : decoder_families()) {
+    known = known || wanted_decoder_ == family.name;
+    if (!wanted_decoder_.empty() && wanted_decoder_ != family.name) continue;
+    decoder_ = family.make(facts, *outputs_);
+    family_ = family.title;
+    if (decoder_) return;
   }
-  return heads_;
+  if (!known) {
+    fail(config_.model_path,
+         "names the decoder '" + wanted_decoder_ + "' in its metadata; there are " + decoder_names());
+  }
+  fail(config_.model_path, "is of no known kind: it has " + std::to_string(outputs_->size()) + " outputs of shape " +
+                               shapes_text(*outputs_) + "; with " + std::to_string(facts.class_count) +
+                               " classes and this input, " + expectations(facts) + " would fit" +
+                               other_classes(facts, *outputs_));
 }
 
-/// Gives every output the layout whose stride fits its cells, whatever the order of the outputs.
-void YoloNetwork::assign_layouts(const std::vector<RawHead>& raw) {
-  std::string shapes;
-  for (const RawHead& head : raw) shapes += ' ' + shape_of(head);
-  layouts_.resize(raw.size());
-  for (const HeadLayout& layout : config_.heads) {
-    const std::string wanted = join_shape({1, static_cast<int>(layout.anchors.size()) * planes_per_anchor(),
-                                           input_.height_px / layout.stride_px, input_.width_px / layout.stride_px});
-    bool found = false;
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-      if (shape_of(raw[i]) != wanted) continue;
-      layouts_[i] = layout;
-      found = true;
-    }
-    if (!found) {
-      fail(config_.model_path, "has outputs of shape" + shapes + ", none is " + wanted + " (stride " +
-                                   std::to_string(layout.stride_px) + ", " +
-                                   std::to_string(config_.class_names.size()) + " classes)");
-    }
-  }
+const std::vector<RawOutput>& Network::infer(const cv::Mat& blob) {
+  outputs_ = &engine_->infer(blob);
+  return *outputs_;
+}
+
+std::vector<Candidate> Network::candidates(int image) const {
+  return decoder_->decode(*outputs_, image, config_.decode);
 }
 
 }  // namespace rtd::detector

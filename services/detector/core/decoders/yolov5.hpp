@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 namespace rtd::detector {
 
@@ -13,13 +13,6 @@ struct HeadLogits {
   const float* logits = nullptr;
   int rows = 0, cols = 0;
   HeadLayout layout;
-};
-
-/// A detected box in pixels of the network's input.
-struct Candidate {
-  int class_index = 0;
-  float score = 0;  ///< objectness x class score, (0, 1]
-  float left_px = 0, top_px = 0, right_px = 0, bottom_px = 0;
 };
 
 /// The least objectness logit that decode_heads() looks at. The score is at most the objectness, so the confidence
@@ -32,11 +25,13 @@ float objectness_gate(const DecodeConfig& config);
 /// NaN in objectness, box or all classes yield nothing. Order: head, anchor, row, column.
 std::vector<Candidate> decode_heads(const std::vector<HeadLogits>& heads, int class_count, const DecodeConfig& config);
 
-/// Greedy non-maximum suppression per class: best score first (ties: earlier candidate), a box that overlaps a kept one
-/// of its class by more than config.nms_iou goes. At most config.max_detections are kept.
-std::vector<Candidate> suppress_non_maxima(std::vector<Candidate> candidates, const DecodeConfig& config);
+/// The family: one output 1 x 3 (5 + classes) x rows x cols per stride, in any order; pixels RGB / 255.
+DecoderFamily yolov5_family();
 
-/// Intersection over union of two boxes, [0, 1]; 0 for empty boxes.
-float intersection_over_union(const Candidate& a, const Candidate& b);
+/// What of the outputs need not be computed everywhere: the planes of a cell's anchor below objectness_gate().
+GatedOutput yolov5_gate(int class_count, const DecodeConfig& config);
+
+/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
+std::vector<HeadLayout> yolov5_heads();
 
 }  // namespace rtd::detector

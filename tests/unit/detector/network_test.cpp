@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/yolo_network.hpp"
+#include "services/detector/core/network.hpp"
 
 #include <gmock/gmock.h>
 
@@ -10,6 +10,7 @@
 #include <random>
 
 #include "common/service/model_locator.hpp"
+#include "services/detector/core/decoders/yolov5.hpp"
 #include "services/detector/core/fast_sigmoid.hpp"
 #include "services/detector/core/opencv_engine.hpp"
 
@@ -41,6 +42,7 @@ TEST(FastSigmoid, works_in_place_and_at_the_ends) {
 TEST(PointwiseHead, computes_what_passes_and_leaves_the_rest) {
   constexpr std::size_t kChannels = 7, kPlanesPerAnchor = 6, kPlanes = 3 * kPlanesPerAnchor, kCells = 50;
   constexpr float kGate = 0.5F, kUntouched = -1234.0F;
+  constexpr GatedOutput kGated{.planes = kPlanes, .group_planes = kPlanesPerAnchor, .gate_plane = 4, .least = kGate};
   std::mt19937_64 random(11);
   std::normal_distribution<float> normal;
   const auto draw = [&](std::size_t count) {
@@ -52,8 +54,7 @@ TEST(PointwiseHead, computes_what_passes_and_leaves_the_rest) {
                            features = draw(kChannels * kCells);
   std::vector<float> logits(kPlanes * kCells, kUntouched);
 
-  PointwiseHead(weights.data(), bias, kChannels, kPlanesPerAnchor)
-      .evaluate(features.data(), kCells, kGate, logits.data());
+  PointwiseHead(weights.data(), bias, kChannels, kGated).evaluate(features.data(), kCells, logits.data());
 
   int passed = 0;
   for (std::size_t plane = 0; plane < kPlanes; ++plane) {
@@ -70,35 +71,35 @@ TEST(PointwiseHead, computes_what_passes_and_leaves_the_rest) {
 }
 
 /// Objectness everywhere and all planes of the cells that pass are those that OpenCV computes. Returns how many pass.
-int expect_equal(const HeadLogits& head, const cv::Mat& dense, float gate) {
+int expect_equal(const RawOutput& head, const cv::Mat& dense, float gate) {
   int passed = 0;
-  const int planes_per_anchor = dense.size[1] / 3, cells = head.rows * head.cols;
+  const int planes_per_anchor = dense.size[1] / 3, cells = head.shape[2] * head.shape[3];
   for (int anchor = 0; anchor < 3; ++anchor) {
     const int first = anchor * planes_per_anchor;
     for (int i = 0; i < cells; ++i) {
       const auto logit = [&](const float* logits, int plane) { return logits[(first + plane) * cells + i]; };
-      EXPECT_NEAR(logit(head.logits, 4), logit(dense.ptr<float>(), 4), 1e-3F);
-      if (logit(head.logits, 4) < gate) continue;
+      EXPECT_NEAR(logit(head.values, 4), logit(dense.ptr<float>(), 4), 1e-3F);
+      if (logit(head.values, 4) < gate) continue;
       ++passed;
       for (int plane = 0; plane < planes_per_anchor; ++plane) {
-        EXPECT_NEAR(logit(head.logits, plane), logit(dense.ptr<float>(), plane), 1e-3F);
+        EXPECT_NEAR(logit(head.values, plane), logit(dense.ptr<float>(), plane), 1e-3F);
       }
     }
   }
   return passed;
 }
 
-TEST(YoloNetwork, equals_opencv_computing_everything) {
-  const service::ModelSearch model = service::find_model("", service::process_environment());
+TEST(Network, equals_opencv_computing_everything) {
+  const service::ModelSearch model = service::find_model("v5lite-s-raw-480x640.onnx", service::process_environment());
   if (!model) GTEST_SKIP() << model.message;
   DetectorConfig config;
   config.model_path = model.path;
   config.decode.confidence_threshold = config.decode.objectness_threshold = 0.001;
-  YoloNetwork network(config);
+  Network network(config);
   cv::Mat blob(std::vector<int>{1, 3, network.input().height_px, network.input().width_px}, CV_32F);
   cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
 
-  const std::vector<HeadLogits>& heads = network.infer(blob);
+  const std::vector<RawOutput>& heads = network.infer(blob);
 
   cv::dnn::Net dense = cv::dnn::readNetFromONNX(model.path);
   dense.setInput(blob);
