@@ -8,7 +8,8 @@ set -euo pipefail
 usage() {
   cat <<'TEXT'
 Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers | --onnxruntime | --packaging]
-  (none)         install missing Debian packages, then download the detector weights if they are missing
+  (none)         install missing Debian packages, then download the detector weights if they are missing and, where npm
+                 is there, ONNX Runtime
   --product      leave out the packages that only the tests need; alone or before another option
   --check        only report what is missing; exit code 1 if something is
   --list         print the Debian packages, one per line
@@ -150,6 +151,18 @@ install_onnxruntime() {
   echo "setup: ONNX Runtime: $folder; next step: cmake -S . -B build/release"
 }
 
+# In the normal setup: only where npm is there, and never a reason to stop.
+bring_onnxruntime() {
+  if [ -f "$root/build/onnxruntime/lib/libonnxruntime.so" ]; then
+    echo "setup: ONNX Runtime: $root/build/onnxruntime"
+  elif [ "$(uname -m)" = x86_64 ] && command -v npm >/dev/null; then
+    "$root/deploy/setup.sh" --product --onnxruntime ||
+      echo "setup: no ONNX Runtime: the detector computes with OpenCV, which takes longer" >&2
+  else
+    echo "setup: no npm or not x86-64, so no ONNX Runtime: the detector computes with OpenCV, which takes longer"
+  fi
+}
+
 check() {
   local missing model status=0
   mapfile -t missing < <(missing_packages)
@@ -174,6 +187,7 @@ case "${1:-}" in
   '')
     install_packages
     fetch_models
+    bring_onnxruntime
     ;;
   --check) check ;;
   --list) printf '%s\n' "${packages[@]}" ;;

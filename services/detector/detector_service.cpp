@@ -17,6 +17,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/onnxruntime_locator.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
@@ -84,6 +85,7 @@ DetectorConfig core_config(const ServiceConfig& config) {
   DetectorConfig core = config.core;
   core.model_path = model.path;
   core.kernel_cache = service::kernel_cache_folder(environment);
+  core.onnxruntime = service::find_onnxruntime();
   return core;
 }
 

@@ -13,6 +13,7 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/onnxruntime_locator.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "services/detector/core/detector.hpp"
@@ -67,6 +68,7 @@ int print_image_table(int argc, const char* const* argv) {
     const service::ModelSearch model = service::find_model(model_name, service::process_environment());
     if (!model) throw ModelError(model.message);
     config.model_path = model.path;
+    config.onnxruntime = service::find_onnxruntime();
     Detector detector(config);
     return print_files(detector, files);
   } catch (const CLI::ParseError& error) {

@@ -41,8 +41,9 @@ struct DetectorConfig {
   int input_width_px = 640, input_height_px = 480;
   DecodeConfig decode;
   int threads = 1;
-  std::string engine = "cpu";  ///< parse_engine()
-  std::string kernel_cache;    ///< folder for what an OpenCL driver compiles; empty: none
+  std::string engine = "auto";  ///< parse_engine()
+  std::string onnxruntime;      ///< library that "auto" may load; empty: none
+  std::string kernel_cache;     ///< folder for what an OpenCL driver compiles; empty: none
   std::vector<std::string> class_names;
   std::vector<HeadLayout> heads;  ///< YOLOv5; empty: those in the file, else as published
 

@@ -105,6 +105,27 @@ EngineChoice onnxruntime_choice(const std::string& text) {
   return choice;
 }
 
+EngineError no_opencl_device(const std::string& wanted) {
+  const std::vector<std::string> there = opencl_devices();
+  return EngineError("there is no OpenCL device" + (wanted.empty() ? std::string() : " '" + wanted + "'") +
+                     (there.empty() ? ": install the OpenCL driver of the GPU (`clinfo` lists devices)"
+                                    : "; there are: " + names_of(there)));
+}
+
+/// ONNX Runtime where it works, else OpenCL on a GPU, else the CPU with the cause in its name.
+std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const EngineModel& model) {
+  std::string cause;
+  if (!onnxruntime.empty() && knows_onnxruntime()) {
+    try {
+      return halve_when_full(make_onnxruntime_engine(model, onnxruntime, "cpu"));
+    } catch (const EngineError& error) {
+      cause = error.what();
+    }
+  }
+  if (const auto gpu = choose_device({}, true)) return make_opencl(*gpu, model);
+  return make_opencv_engine(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause), std::nullopt);
+}
+
 /// The images [first, first + count) of a blob.
 cv::Mat part_of(const cv::Mat& blob, int first, int count) {
   std::vector<int> sizes(blob.size.p, blob.size.p + blob.dims);
@@ -184,19 +205,23 @@ EngineChoice parse_engine(const std::string& text) {
   throw EngineError("'" + text + "' is not an engine: use " + msg::kEngineNames);
 }
 
+std::string engine_label(const std::string& text) {
+  const EngineChoice choice = parse_engine(text);
+  if (choice.kind != Kind::kOnnxRuntime) return text;
+  return choice.device == "cpu" ? "onnxruntime" : "onnxruntime@" + choice.device;
+}
+
 std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineModel& model) {
-  if (choice.kind == Kind::kOnnxRuntime)
-    return halve_when_full(make_onnxruntime_engine(model, choice.library, choice.device));
-  if (choice.kind != Kind::kCpu) {
-    if (const auto device = choose_device(choice.device, choice.kind == Kind::kAuto))
-      return make_opencl(*device, model);
-    if (choice.kind == Kind::kOpenCl) {
-      const std::vector<std::string> there = opencl_devices();
-      const std::string which = choice.device.empty() ? "" : " '" + choice.device + "'";
-      throw EngineError("there is no OpenCL device" + which +
-                        (there.empty() ? ": install the OpenCL driver of the GPU (`clinfo` lists devices)"
-                                       : "; there are: " + names_of(there)));
-    }
+  switch (choice.kind) {
+    case Kind::kAuto:
+      return make_best_engine(choice.library, model);
+    case Kind::kOnnxRuntime:
+      return halve_when_full(make_onnxruntime_engine(model, choice.library, choice.device));
+    case Kind::kOpenCl:
+      if (const auto device = choose_device(choice.device, false)) return make_opencl(*device, model);
+      throw no_opencl_device(choice.device);
+    case Kind::kCpu:
+      break;
   }
   return make_opencv_engine(model, kCpuDevice, std::nullopt);
 }

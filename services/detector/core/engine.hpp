@@ -32,7 +32,7 @@ class OutOfDeviceMemory : public EngineError {
 /// Which engine is asked for.
 struct EngineChoice {
   enum class Kind {
-    kAuto,    ///< OpenCL where a GPU has a driver for it, else the CPU
+    kAuto,    ///< ONNX Runtime where its library is known and works, else OpenCL on a GPU, else the CPU
     kCpu,     ///< OpenCV DNN
     kOpenCl,  ///< OpenCV DNN, any OpenCL device
     kOnnxRuntime,
@@ -40,12 +40,15 @@ struct EngineChoice {
   Kind kind = Kind::kCpu;
   /// OpenCL: part of the device's name; empty: the first one. ONNX Runtime: "cpu", "cuda", "cuda:1".
   std::string device;
-  std::string library;  ///< ONNX Runtime's
+  std::string library;  ///< ONNX Runtime's; auto: empty without one
 };
 
 /// "auto", "cpu", "opencl", "opencl:DEVICE", "onnxruntime:LIBRARY" or "onnxruntime:LIBRARY@DEVICE"
 /// (common/msg/engine_names.hpp). Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
+
+/// The engine for tables: without the path of a library, "onnxruntime@cuda". Throws as parse_engine().
+std::string engine_label(const std::string& text);
 
 /// An output whose last layer need not be computed everywhere. Its planes come in groups; of a cell, the planes of a
 /// group are looked at only where the group's plane `gate_plane` reaches `least`.

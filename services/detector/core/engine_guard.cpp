@@ -68,7 +68,7 @@ EngineGuard::EngineGuard(DetectorConfig config, bool verify) : on_cpu_(config) {
     fall_back(error.what());
     return;
   }
-  const bool same = detector_->config().engine == on_cpu_.engine;
+  const bool same = detector_->device().starts_with(kCpuDevice);
   if (verify && !same) reference_ = std::make_unique<Detector>(on_cpu_);
 }
 

@@ -105,10 +105,12 @@ void Network::load() {
                                  std::to_string(kSideMultiple));
   }
   const int class_count = static_cast<int>(config_.class_names.size());
-  engine_ = make_engine(parse_engine(config_.engine), {.onnx = bytes,
-                                                       .gated = yolov5_gate(class_count, config_.decode),
-                                                       .threads = config_.threads,
-                                                       .kernel_cache = config_.kernel_cache});
+  EngineChoice engine = parse_engine(config_.engine);
+  if (engine.kind == EngineChoice::Kind::kAuto) engine.library = config_.onnxruntime;
+  engine_ = make_engine(engine, {.onnx = bytes,
+                                 .gated = yolov5_gate(class_count, config_.decode),
+                                 .threads = config_.threads,
+                                 .kernel_cache = config_.kernel_cache});
 }
 
 /// What is not configured comes from the file's metadata, else from the families' defaults.

@@ -9,6 +9,7 @@
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/onnxruntime_locator.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -85,6 +86,7 @@ ModelFacts ModelUnderTest::facts() const {
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score) {
   detector::DetectorConfig config;
   config.kernel_cache = service::kernel_cache_folder(service::process_environment());
+  config.onnxruntime = service::find_onnxruntime();
   if (!options.names_file.empty()) {
     config.class_names = detector::split_lines(io::read_text(options.names_file).value_or(""));
     if (config.class_names.empty())

@@ -23,7 +23,7 @@ struct ModelFacts {
   double median_ms = 0;  ///< CPU time of one image, all threads of this process
 
   /// The name, with the engine unless it is the CPU.
-  std::string title() const { return engine == "cpu" ? name : name + ", " + engine; }
+  std::string title() const { return engine == "cpu" ? name : name + ", " + detector::engine_label(engine); }
 };
 
 /// One of the compared models on one of the compared engines.

@@ -21,6 +21,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/onnxruntime_locator.hpp"
 #include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/launcher/demo/demo_command.hpp"
@@ -147,7 +148,8 @@ void check_weights(Findings& findings) {
 void check_engines(Findings& findings) {
   std::string text = "detector engines: cpu";
   for (const std::string& device : detector::opencl_devices()) text += ", opencl:" + device;
-  if (detector::knows_onnxruntime()) text += ", onnxruntime:LIBRARY";
+  const std::string library = service::find_onnxruntime();
+  if (detector::knows_onnxruntime()) text += ", onnxruntime:" + (library.empty() ? "LIBRARY" : library);
   findings.push_back({Verdict::kOk, text});
 }
 

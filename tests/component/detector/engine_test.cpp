@@ -48,6 +48,7 @@ class EngineTest : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     config_.model_path = (folder_ / "tiny.onnx").string();
     config_.class_names = {"person", "box"};
+    config_.engine = "cpu";
     config_.kernel_cache = folder_.string() + "_kernels";  // kept: OpenCV continues to write there
     std::ofstream(config_.model_path, std::ios::binary) << test::tiny_network_onnx({});
   }
@@ -171,6 +172,34 @@ TEST_F(EngineTest, auto_takes_the_cpu_where_there_is_no_gpu) {
   EXPECT_THAT(guard.fallback(), IsEmpty());
 }
 
+TEST_F(EngineTest, auto_takes_onnxruntime_first) {
+  if (const std::string why = absent("onnxruntime"); !why.empty()) GTEST_SKIP() << why;
+  config_.engine = "auto";
+  config_.onnxruntime = ONNXRUNTIME_LIBRARY;
+  const EngineGuard guard(config_, true);
+  EXPECT_THAT(guard.detector().device(), HasSubstr("CPU (ONNX Runtime 1."));
+  EXPECT_THAT(guard.fallback(), IsEmpty());
+}
+
+TEST_F(EngineTest, auto_says_why_it_does_not_take_the_onnxruntime_that_is_there) {
+  for (const std::string& device : opencl_devices()) {
+    if (device.ends_with("(GPU)")) GTEST_SKIP() << "this host has a GPU";
+  }
+  if (!knows_onnxruntime()) GTEST_SKIP() << "built without ONNX Runtime";
+  config_.engine = "auto";
+  config_.onnxruntime = "libdl.so.2";
+  const Detector detector(config_);
+  EXPECT_THAT(detector.device(), HasSubstr("CPU (OpenCV DNN), because libdl.so.2 is not ONNX Runtime"));
+}
+
+TEST_F(EngineTest, auto_names_the_file_of_a_network_that_no_engine_takes) {
+  const std::string whole = test::tiny_network_onnx({});
+  std::ofstream(config_.model_path, std::ios::binary) << whole.substr(0, whole.size() / 2);
+  config_.engine = "auto";
+  config_.onnxruntime = ONNXRUNTIME_LIBRARY;
+  EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<ModelError>(HasSubstr(config_.model_path)));
+}
+
 class EachEngine : public EngineTest, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
@@ -190,6 +219,7 @@ TEST_P(EachEngine, computes_the_real_networks) {
     const service::ModelSearch model = service::find_model(name, service::process_environment());
     if (!model) GTEST_SKIP() << model.message;
     DetectorConfig config;
+    config.engine = "cpu";
     config.model_path = model.path;
     EXPECT_LT(difference(config, GetParam()), 1e-4) << name;
   }

@@ -82,7 +82,7 @@ TEST_F(FleetProcess, computes_one_by_one_with_a_network_that_takes_no_batch_and_
   detector.start(arguments());
   EXPECT_TRUE(anna->wait_answers(30));
   EXPECT_TRUE(ben->wait_answers(30));
-  EXPECT_THAT(anna->status()->message, HasSubstr("computes on CPU (OpenCV DNN), one image at a time, 2 robots"));
+  EXPECT_THAT(anna->status()->message, HasSubstr("), one image at a time, 2 robots"));
   detector.interrupt();
   EXPECT_EQ(detector.wait(), 0);
   const std::string& output = detector.output();

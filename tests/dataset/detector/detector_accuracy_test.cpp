@@ -46,6 +46,7 @@ class DetectorQuality : public ::testing::Test {
     const service::ModelSearch model = service::find_model("", service::process_environment());
     if (!model) GTEST_SKIP() << model.message;
     config_.model_path = model.path;
+    config_.engine = "cpu";
     config_.decode.confidence_threshold = kPersonConfidence;
   }
   static std::vector<vision::Detection> people(Detector& detector, const cv::Mat& image, double roll_rad = 0) {

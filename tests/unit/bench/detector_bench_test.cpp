@@ -169,9 +169,9 @@ TEST_F(DetectorBench, serves_robots_with_every_engine_and_batch) {
 }
 
 TEST_F(DetectorBench, names_engines_without_libraries) {
-  EXPECT_EQ(engine_label("opencl:H200"), "opencl:H200");
-  EXPECT_EQ(engine_label("onnxruntime:/opt/ort/lib/libonnxruntime.so"), "onnxruntime");
-  EXPECT_EQ(engine_label("onnxruntime:lib/libonnxruntime.so@cuda:1"), "onnxruntime@cuda:1");
+  EXPECT_EQ(detector::engine_label("opencl:H200"), "opencl:H200");
+  EXPECT_EQ(detector::engine_label("onnxruntime:/opt/ort/lib/libonnxruntime.so"), "onnxruntime");
+  EXPECT_EQ(detector::engine_label("onnxruntime:lib/libonnxruntime.so@cuda:1"), "onnxruntime@cuda:1");
 }
 
 TEST_F(DetectorBench, says_which_engines_serve_no_robots) {

@@ -93,6 +93,7 @@ TEST(Network, equals_opencv_computing_everything) {
   const service::ModelSearch model = service::find_model("v5lite-s-raw-480x640.onnx", service::process_environment());
   if (!model) GTEST_SKIP() << model.message;
   DetectorConfig config;
+  config.engine = "cpu";
   config.model_path = model.path;
   config.decode.confidence_threshold = config.decode.objectness_threshold = 0.001;
   Network network(config);

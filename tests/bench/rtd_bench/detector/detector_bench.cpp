@@ -116,13 +116,8 @@ detector::DetectorConfig config_of(const DetectorOptions& options, const std::st
   config.engine = engine;
   config.threads = options.threads;
   config.kernel_cache = options.kernel_cache;
+  config.onnxruntime = options.onnxruntime;
   return config;
-}
-
-std::string engine_label(const std::string& engine) {
-  const detector::EngineChoice choice = detector::parse_engine(engine);
-  if (choice.kind != detector::EngineChoice::Kind::kOnnxRuntime) return engine;
-  return choice.device == "cpu" ? "onnxruntime" : "onnxruntime@" + choice.device;
 }
 
 double DetectorResult::ms_per_image() const {

@@ -27,10 +27,8 @@ struct DetectorOptions {
   std::vector<int> batches = {1};
   int threads = 1;           ///< of engines that compute on the CPU
   std::string kernel_cache;  ///< folder for what OpenCL compiles; empty: none
+  std::string onnxruntime;   ///< library that the engine auto may load; empty: none
 };
-
-/// The name of an engine without the path of its library: "onnxruntime@cuda".
-std::string engine_label(const std::string& engine);
 
 /// For one of the engines.
 detector::DetectorConfig config_of(const DetectorOptions& options, const std::string& engine);

@@ -14,6 +14,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/onnxruntime_locator.hpp"
 #include "services/detector/core/engine.hpp"
 
 namespace rtd::bench {
@@ -56,6 +57,7 @@ DetectorOptions complete(DetectorRequest& request) {
   DetectorOptions options = request.options;
   options.model_path = model.path;
   options.kernel_cache = service::kernel_cache_folder(environment);
+  options.onnxruntime = service::find_onnxruntime();
   return options;
 }
 

@@ -105,8 +105,10 @@ void draw_engines(Svg& svg, const BarLayout& layout, const std::vector<DetectorR
     const double ms = result.ms_per_image(), cpu = layout.at(result.cpu_ms_per_image);
     const std::string figures =
         fmt::format("{:.1f} ms, {:.1f}/s, CPU {:.1f} ms", ms, result.images_per_s(), result.cpu_ms_per_image);
-    draw_bar(svg, layout,
-             {engine_label(result.what.engine), figures, result.failure, engine_colour(result.what.engine), ms}, y);
+    draw_bar(
+        svg, layout,
+        {detector::engine_label(result.what.engine), figures, result.failure, engine_colour(result.what.engine), ms},
+        y);
     if (result.failure.empty()) svg.line({cpu, y + 1}, {cpu, y + BarLayout::kBar - 1}, {palette::kInk, 2});
   });
 }
@@ -119,7 +121,7 @@ void draw_robots(Svg& svg, const BarLayout& layout, const std::vector<FleetResul
   };
   draw_groups(svg, layout, cases, title, [&](const FleetResult& result, double y) {
     draw_bar(svg, layout,
-             {fmt::format("{}, batch {}", engine_label(result.engine), result.batch),
+             {fmt::format("{}, batch {}", detector::engine_label(result.engine), result.batch),
               fmt::format("{:.1f} Hz, p99 {:.0f} ms, CPU {:.0f} %", result.mean_hz, result.latency_p99_ms,
                           result.cpu_percent),
               result.failure, engine_colour(result.engine), result.mean_hz},

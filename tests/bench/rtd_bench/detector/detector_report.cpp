@@ -12,7 +12,7 @@ namespace rtd::bench {
 namespace {
 
 std::string case_row(const DetectorResult& result) {
-  const std::string head = fmt::format("{:<16} {:>5}", engine_label(result.what.engine), result.what.batch);
+  const std::string head = fmt::format("{:<16} {:>5}", detector::engine_label(result.what.engine), result.what.batch);
   if (!result.failure.empty()) return fmt::format("{}  {}\n", head, result.failure);
   const detector::AgreementCount& same = result.same;
   const std::string difference = same.first_difference.empty() ? "" : "; first difference: " + same.first_difference;

@@ -149,7 +149,7 @@ std::string fleet_table(const std::vector<FleetResult>& results, const FleetLoad
       load.rate_hz, load.seconds, "engine", "batch", "robots", "Hz each", "Hz least", "images/s", "p50 ms", "p99 ms",
       "batch mean", "CPU %", "device");
   for (const FleetResult& result : results) {
-    text += fmt::format("{:<16} {:>5} {:>6}", engine_label(result.engine), result.batch, result.robots);
+    text += fmt::format("{:<16} {:>5} {:>6}", detector::engine_label(result.engine), result.batch, result.robots);
     text += result.failure.empty()
                 ? fmt::format(" {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>10.1f} {:>6.0f}  {}\n", result.mean_hz,
                               result.least_hz, result.images_per_s(), result.latency_p50_ms, result.latency_p99_ms,
