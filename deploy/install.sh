@@ -90,6 +90,7 @@ if [ "$models" -eq 1 ] && ! compgen -G "$weights/*.onnx" >/dev/null; then
   found="$("$root/deploy/setup.sh" --product --check | sed -n 's/^detector weights: \(\/.*\)/\1/p' || true)"
   if [ -n "$found" ]; then
     as_root install -D -m 644 -t "$weights" "$found"
+    [ ! -f "$found.licence.txt" ] || as_root install -m 644 -t "$weights" "$found.licence.txt"
     echo "install: detector weights in $weights"
   fi
 fi

@@ -7,13 +7,16 @@ set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--product] [--check | --list | --models | --no-models | --viewers | --onnxruntime | --packaging]
+Usage: deploy/setup.sh [--product] [--model NAME] [--accept-hash]
+                       [--check | --list | --models | --no-models | --viewers | --onnxruntime | --packaging]
   (none)         install missing Debian packages, then download the detector weights if they are missing and, where npm
                  is there, ONNX Runtime
-  --product      leave out the packages that only the tests need; alone or before another option
+  --product      leave out the packages that only the tests need
+  --model NAME   other weights than those of YOLOX-nano (Apache-2.0): yolov5-lite (GPL-3.0), the network of the paper
+  --accept-hash  take weights with another checksum if their outputs on a fixed image are right
   --check        only report what is missing; exit code 1 if something is
   --list         print the Debian packages, one per line
-  --models       only download and convert the detector weights
+  --models       only download the detector weights
   --no-models    only install the packages
   --viewers      also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
   --onnxruntime  only download ONNX Runtime with its C API (150 MB, from npm) into build/onnxruntime, for that engine
@@ -88,24 +91,36 @@ install_packages() {
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
 }
 
+# The files that the wanted network may have; without --model, those that the detector takes by itself.
+model_files() {
+  case "$model" in
+    '') echo yolox_nano.onnx nanodet_g.onnx ;;
+    yolox-nano) echo yolox_nano.onnx ;;
+    yolov5-lite) echo v5lite-s-raw-480x640.onnx ;;
+  esac
+}
+
 model_path() {
-  local candidate
-  for candidate in "${RTD_MODEL_DIR:-}" "${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/rtd-slam"; do
-    if [ -n "$candidate" ] && [ -f "$candidate/v5lite-s-raw-480x640.onnx" ]; then
-      printf '%s\n' "$candidate/v5lite-s-raw-480x640.onnx"
-      return
-    fi
+  local folder file
+  for folder in ${RTD_MODEL_DIR:+"$RTD_MODEL_DIR" "$RTD_MODEL_DIR/permissive"} \
+    "${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/rtd-slam"; do
+    for file in $(model_files); do
+      if [ -f "$folder/$file" ]; then
+        printf '%s\n' "$folder/$file"
+        return
+      fi
+    done
   done
 }
 
 fetch_models() {
-  local model
-  model="$(model_path)"
-  if [ -n "$model" ]; then
-    echo "setup: detector weights: $model"
-  elif ! "$root/deploy/fetch_model.sh"; then
+  local found
+  found="$(model_path)"
+  if [ -n "$found" ]; then
+    echo "setup: detector weights: $found"
+  elif ! "$root/deploy/fetch_model.sh" "${accept_hash[@]}" ${model:+"$model"}; then
     echo "setup: no detector weights: RTD-SLAM still runs, with geometry only." >&2
-    echo "setup: to add them, run deploy/setup.sh --models, or put v5lite-s-raw-480x640.onnx into RTD_MODEL_DIR" >&2
+    echo "setup: to add them, run deploy/setup.sh --models, or put $(model_files) into RTD_MODEL_DIR" >&2
   fi
 }
 
@@ -164,7 +179,7 @@ bring_onnxruntime() {
 }
 
 check() {
-  local missing model status=0
+  local missing found status=0
   mapfile -t missing < <(missing_packages)
   if [ "${#missing[@]}" -gt 0 ]; then
     echo "missing packages: ${missing[*]}"
@@ -172,18 +187,37 @@ check() {
   else
     echo "packages: all ${#packages[@]} installed"
   fi
-  model="$(model_path)"
-  echo "detector weights: ${model:-none (geometry only; get them with deploy/setup.sh --models)}"
+  found="$(model_path)"
+  echo "detector weights: ${found:-none (geometry only; get them with deploy/setup.sh --models)}"
   exit "$status"
 }
 
-if [ "${1:-}" = --product ]; then
+action='' model='' product=0 accept_hash=()
+while [ $# -gt 0 ]; do
+  case "$1" in
+    --product) product=1 ;;
+    --accept-hash) accept_hash=(--accept-hash) ;;
+    --model)
+      model="${2:-}"
+      if [ -z "$(model_files)" ] || [ -z "$model" ]; then
+        echo "setup: unknown network '$model' after --model: use yolox-nano or yolov5-lite" >&2
+        exit 2
+      fi
+      shift
+      ;;
+    *)
+      if [ -n "$action" ]; then
+        echo "setup: $action and $1 exclude each other" >&2
+        exit 2
+      fi
+      action="$1"
+      ;;
+  esac
   shift
-else
-  packages+=("${test_packages[@]}")
-fi
+done
+[ "$product" -eq 1 ] || packages+=("${test_packages[@]}")
 
-case "${1:-}" in
+case "$action" in
   '')
     install_packages
     fetch_models
@@ -201,7 +235,7 @@ case "${1:-}" in
     ;;
   --help | -h) usage ;;
   *)
-    echo "setup: unknown option '$1'" >&2
+    echo "setup: unknown option '$action'" >&2
     usage >&2
     exit 2
     ;;

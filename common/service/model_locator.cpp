@@ -7,12 +7,33 @@
 #include <sstream>
 #include <vector>
 
+#include "common/service/model_table.hpp"
+
 namespace rtd::service {
 namespace {
 
-constexpr const char* kAdvice =
-    "run `deploy/setup.sh --models` (downloads 3.6 MB and converts them), or point RTD_MODEL_DIR at a folder that has "
-    "them";
+/// The command that fetches what is missing.
+std::string advice(const std::string& configured) {
+  const KnownModel* const known = find_known_model(configured);
+  const std::string option = known == nullptr || known->usual ? "" : std::string(" --model ") + known->name;
+  return "run `deploy/setup.sh --models" + option + "`, or point RTD_MODEL_DIR at a folder that has them";
+}
+
+/// The file names that are looked for.
+std::vector<std::string> names_of(const std::string& configured) {
+  if (const KnownModel* const known = find_known_model(configured)) return {known->file};
+  if (!configured.empty()) return {configured};
+  std::vector<std::string> names;
+  for (const KnownModel& model : kKnownModels)
+    if (model.usual) names.emplace_back(model.file);
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
+  return text;
+}
 
 bool is_file(const std::filesystem::path& path) {
   std::error_code ignored;
@@ -22,7 +43,10 @@ bool is_file(const std::filesystem::path& path) {
 std::vector<std::filesystem::path> search_folders(const EnvironmentReader& environment) {
   const auto value = [&environment](const char* name) { return environment(name).value_or(""); };
   std::vector<std::filesystem::path> folders;
-  if (const std::string folder = value("RTD_MODEL_DIR"); !folder.empty()) folders.emplace_back(folder);
+  if (const std::string folder = value("RTD_MODEL_DIR"); !folder.empty()) {
+    folders.emplace_back(folder);
+    folders.push_back(std::filesystem::path(folder) / "permissive");
+  }
   if (const std::string cache = value("XDG_CACHE_HOME"); !cache.empty()) {
     folders.push_back(std::filesystem::path(cache) / "rtd-slam");
   } else if (const std::string home = value("HOME"); !home.empty()) {
@@ -38,18 +62,22 @@ std::vector<std::filesystem::path> search_folders(const EnvironmentReader& envir
 }  // namespace
 
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment) {
-  const std::string name = configured.empty() ? kDefaultModelFile : configured;
-  if (name.find('/') != std::string::npos) {
-    if (is_file(name)) return {name, {}};
-    return {{}, "no detector weights: detector.model is '" + name + "', which is no file; correct it, or " + kAdvice};
+  if (configured.find('/') != std::string::npos) {
+    if (is_file(configured)) return {configured, {}};
+    return {{},
+            "no detector weights: detector.model is '" + configured + "', which is no file; correct it, or " +
+                advice(configured)};
   }
-  std::string looked;
+  const std::vector<std::string> names = names_of(configured);
+  std::vector<std::string> looked;
   for (const std::filesystem::path& folder : search_folders(environment)) {
-    if (is_file(folder / name)) return {(folder / name).string(), {}};
-    looked += looked.empty() ? "" : ", ";
-    looked += folder.string();
+    for (const std::string& name : names)
+      if (is_file(folder / name)) return {(folder / name).string(), {}};
+    looked.push_back(folder.string());
   }
-  return {{}, "no detector weights: looked for " + name + " in " + looked + "; " + kAdvice};
+  return {{},
+          "no detector weights: looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
+              advice(configured)};
 }
 
 std::string kernel_cache_folder(const EnvironmentReader& environment) {

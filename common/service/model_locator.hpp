@@ -8,9 +8,6 @@
 
 namespace rtd::service {
 
-/// File name of the network that deploy/setup.sh fetches and that is used when nothing else is configured.
-inline constexpr const char* kDefaultModelFile = "v5lite-s-raw-480x640.onnx";
-
 /// Value of an environment variable, empty when it is not set.
 using EnvironmentReader = std::function<std::optional<std::string>(const std::string& name)>;
 
@@ -21,9 +18,10 @@ struct ModelSearch {
   explicit operator bool() const { return !path.empty(); }
 };
 
-/// Looks for the network. `configured` (config key detector.model) may be empty (the default file name), a bare file
-/// name or a path. A path is taken as it is; a file name is looked for in RTD_MODEL_DIR, then in the user's cache
-/// ($XDG_CACHE_HOME or $HOME/.cache)/rtd-slam, then in rtd-slam/models of $XDG_DATA_DIRS (/usr/local/share, /usr/share).
+/// Looks for the network. `configured` (config key detector.model) may be empty (the usual ones of kKnownModels, the
+/// first that is there), the name of a known one, a bare file name or a path. A path is taken as it is; a file name is
+/// looked for in RTD_MODEL_DIR and its folder `permissive`, then in the user's cache ($XDG_CACHE_HOME or
+/// $HOME/.cache)/rtd-slam, then in rtd-slam/models of $XDG_DATA_DIRS (/usr/local/share, /usr/share).
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment);
 
 /// The folder of the user's cache for what OpenCL compiles for a device; empty without XDG_CACHE_HOME and HOME.

@@ -16,6 +16,7 @@
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/onnxruntime_locator.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -117,9 +118,10 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
         slam_->callbacks());
   }
   const Detector& detector = detectors_.front()->detector();
-  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} workers={} device=\"{}\"",
-              detector.config().model_path, detector.input_size().width_px, detector.input_size().height_px,
-              config_.core.threads, detectors_.size(), detector.device());
+  SPDLOG_INFO("event=model_loaded file={} weights=\"{}\" input={}x{} threads={} workers={} device=\"{}\"",
+              detector.config().model_path, service::describe_model(detector.config().model_path),
+              detector.input_size().width_px, detector.input_size().height_px, config_.core.threads, detectors_.size(),
+              detector.device());
   report_engine(*detectors_.front());
 }
 

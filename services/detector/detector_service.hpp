@@ -123,7 +123,7 @@ DetectorConfig core_config(const ServiceConfig& config);
 class DetectorService {
  public:
   static constexpr const char* kName = "detector";
-  static constexpr const char* kDescription = "Finds people and things in camera images (YOLOv5-Lite)";
+  static constexpr const char* kDescription = "Finds people and things in camera images (YOLOX, NanoDet, YOLOv5)";
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 

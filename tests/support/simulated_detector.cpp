@@ -10,6 +10,7 @@
 
 #include "common/camera/synthetic/texture.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "tests/support/remembered_detections.hpp"
@@ -127,10 +128,11 @@ Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
 }
 
 Look real_look(const DetectorOptions& options) {
-  const service::ModelSearch model = service::find_model("", service::process_environment());
+  const service::ModelSearch model = service::find_model(service::kPaperModel, service::process_environment());
   if (!model) throw std::invalid_argument(model.message);
   detector::DetectorConfig config;
   config.model_path = model.path;
+  config.engine = "cpu";
   config.decode.confidence_threshold = options.confidence;
   config.decode.objectness_threshold = std::min(config.decode.objectness_threshold, options.confidence);
   return

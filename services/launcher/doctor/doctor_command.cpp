@@ -21,6 +21,7 @@
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "common/service/onnxruntime_locator.hpp"
 #include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
@@ -141,7 +142,7 @@ void check_leftovers(Findings& findings) {
 void check_weights(Findings& findings) {
   const service::ModelSearch model = service::find_model({}, service::process_environment());
   findings.push_back(
-      model ? Finding{Verdict::kOk, "weights: " + model.path}
+      model ? Finding{Verdict::kOk, "weights: " + model.path + " (" + service::describe_model(model.path) + ")"}
             : Finding{Verdict::kWarn, "weights: " + model.message + "; until then runs use geometry only"});
 }
 

@@ -19,6 +19,7 @@
 #include "common/process/out_folder.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "common/service/pacer.hpp"
 
 namespace rtd::launcher {
@@ -87,6 +88,13 @@ std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   return frames == 0 ? limit : std::min(frames, limit);
 }
 
+/// The paper's network for the paper's mode, where it is there; else empty: the usual one.
+std::string model_of_mode(const RunSetup& setup) {
+  const bool of_the_paper = msg::find_filter_mode(setup.services.filter_mode)->mode == msg::FilterMode::kRtdPaper;
+  if (!of_the_paper) return {};
+  return service::find_model(service::kPaperModel, service::process_environment()).path;
+}
+
 void choose_detector(RunSetup& setup) {
   if (setup.replay) {
     setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
@@ -110,13 +118,13 @@ void choose_detector(RunSetup& setup) {
     setup.detector_note = "on another host";
     return;
   }
-  std::string configured = setup.services.model;
+  std::string configured = setup.services.model.empty() ? model_of_mode(setup) : setup.services.model;
   if (!configured.empty() && fs::is_regular_file(configured)) configured = fs::absolute(configured).string();
   const service::ModelSearch model = service::find_model(configured, service::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
   setup.weights_advice = model.message;
-  setup.detector_note = model ? fs::path(model.path).filename().string() : "off (no weights)";
+  setup.detector_note = model ? service::describe_model(model.path) : "off (no weights)";
 }
 
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
@@ -238,7 +246,8 @@ void clear_out_dir(const RunSetup& setup) {
   io::remove_unfinished(out_dir);
   std::error_code error;
   const fs::path map = out_dir / "map.rtdmap";
-  const bool needed = !setup.services.map.load.empty() && fs::equivalent(setup.services.map.load, map, error);  // --map of an earlier run here
+  const bool needed = !setup.services.map.load.empty() &&
+                      fs::equivalent(setup.services.map.load, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
   for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",

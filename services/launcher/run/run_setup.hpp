@@ -113,7 +113,7 @@ struct RunSetup : RunOptions {
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
   std::string model_path;                         ///< empty: no detector in this run
-  std::string detector_note;                      ///< model file name, or "off (why)"
+  std::string detector_note;                      ///< "YOLOX-nano, Apache-2.0", or "off (why)"
   bool remote_detector = false;                   ///< it runs on another host; the launcher does not start it
   std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
   bool save_map_asked = false;  ///< the user named the file

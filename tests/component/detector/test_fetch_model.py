@@ -17,17 +17,20 @@ sys.path.insert(0, str(ROOT / "tests/unit/detector/tools"))
 
 import cv2  # noqa: E402
 import fake_torch  # noqa: E402
+import onnx  # noqa: E402
+import onnx.numpy_helper  # noqa: E402
 import tiny_yolo  # noqa: E402
 
 MODEL = "v5lite-s-raw-480x640.onnx"
+YOLOX = "yolox_nano.onnx"
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
-    """Serves one body for v5lite-s.pt, promising `promised` bytes more than it sends."""
+    """Serves one body for each download, promising `promised` bytes more than it sends."""
 
     def do_GET(self):
         self.server.requests += 1
-        if self.path != "/models/v5lite-s.pt" or self.server.body is None:
+        if self.path not in ("/models/v5lite-s.pt", "/models/yolox_nano.onnx") or self.server.body is None:
             self.send_error(404)
             return
         self.send_response(200)
@@ -58,14 +61,19 @@ class FetchModel(unittest.TestCase):
         fake_torch.save(tiny_yolo.TinyYolo().checkpoint(), path)
         return path.read_bytes()
 
-    def fetch(self, sha256=None, url=None):
+    def fetch(self, sha256=None, url=None, arguments=("yolov5-lite",)):
         environment = {k: v for k, v in os.environ.items() if not k.lower().endswith("_proxy")}
         environment["XDG_CACHE_HOME"] = str(self.folder / "cache")
         environment["RTD_MODEL_URL"] = url or f"http://127.0.0.1:{self.server.server_address[1]}/models"
         if sha256:
             environment["RTD_MODEL_SHA256"] = sha256
         return subprocess.run(
-            [ROOT / "deploy/fetch_model.sh"], env=environment, capture_output=True, text=True, timeout=60, check=False
+            [ROOT / "deploy/fetch_model.sh", *arguments],
+            env=environment,
+            capture_output=True,
+            text=True,
+            timeout=60,
+            check=False,
         )
 
     def assert_refused(self, result, pattern):
@@ -77,7 +85,8 @@ class FetchModel(unittest.TestCase):
         self.server.body = self.checkpoint()
         result = self.fetch(hashlib.sha256(self.server.body).hexdigest())
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertEqual([p.name for p in self.cache.iterdir()], [MODEL])
+        self.assertEqual(sorted(p.name for p in self.cache.iterdir()), [MODEL, MODEL + ".licence.txt"])
+        self.assertRegex((self.cache / (MODEL + ".licence.txt")).read_text(), r"YOLOv5-Lite s by ppogg, GPL-3.0\nSource")
         network = cv2.dnn.readNetFromONNX(str(self.cache / MODEL))
         self.assertEqual(list(network.getUnconnectedOutLayersNames()), ["p3", "p4", "p5"])
 
@@ -98,6 +107,52 @@ class FetchModel(unittest.TestCase):
         result = self.fetch()  # the checksum in the script is the published file's
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertTrue((self.cache / MODEL).is_file())
+
+    def yolox(self):
+        for folder in (os.environ.get("RTD_MODEL_DIR", "/nowhere"),):
+            for path in (pathlib.Path(folder) / YOLOX, pathlib.Path(folder) / "permissive" / YOLOX):
+                if path.is_file():
+                    return path.read_bytes()
+        self.skipTest(f"no {YOLOX} (RTD_MODEL_DIR)")
+
+    def test_fetches_yolox_nano_when_nothing_else_is_asked_for(self):
+        self.server.body = self.yolox()
+        result = self.fetch(arguments=())
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(p.name for p in self.cache.iterdir()), [YOLOX, YOLOX + ".licence.txt"])
+        licence = (self.cache / (YOLOX + ".licence.txt")).read_text()
+        self.assertRegex(licence, r"YOLOX-nano by Megvii, Apache-2.0\nSource: http")
+        self.assertIn("Apache License", licence)
+        network = cv2.dnn.readNetFromONNX(str(self.cache / YOLOX))
+        self.assertEqual(len(network.getUnconnectedOutLayersNames()), 1)
+
+    def test_names_both_checksums_of_another_yolox_nano(self):
+        self.server.body = self.yolox() + b"\x00"
+        found = hashlib.sha256(self.server.body).hexdigest()
+        self.assert_refused(self.fetch(arguments=()), f"{found}, expected 695e750a.*--accept-hash")
+
+    def test_accepts_another_checksum_when_the_outputs_are_right(self):
+        self.server.body = self.yolox()
+        other = "0" * 64
+        result = self.fetch(sha256=other, arguments=("--accept-hash",))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertRegex(result.stdout, f"checksum 695e750a.*, expected {other}: checking what it computes")
+        self.assertTrue((self.cache / YOLOX).is_file())
+
+    def test_refuses_other_outputs_whatever_is_accepted(self):
+        model = onnx.load_from_string(self.yolox())
+        for tensor in model.graph.initializer:  # another training
+            if tensor.name == "head.reg_preds.0.bias":
+                tensor.CopyFrom(onnx.numpy_helper.from_array(onnx.numpy_helper.to_array(tensor) + 0.1, tensor.name))
+        self.server.body = model.SerializeToString()
+        self.assert_refused(self.fetch(arguments=("--accept-hash",)), "(?s)outputs differ by up to 0.1.*not YOLOX-nano")
+        self.server.body = b"not a network"
+        self.assert_refused(self.fetch(arguments=("--accept-hash",)), "(?s)cannot be read.*not YOLOX-nano")
+
+    def test_refuses_an_unknown_network(self):
+        result = self.fetch(arguments=("yolo9000",))
+        self.assertEqual(result.returncode, 2)
+        self.assertRegex(result.stderr, "unknown network 'yolo9000': use yolox-nano")
 
     def test_refuses_a_wrong_checksum(self):
         self.server.body = self.checkpoint()

@@ -8,11 +8,15 @@
 #include <fstream>
 #include <map>
 
+#include "common/service/model_table.hpp"
+
 namespace rtd::service {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+
+const std::string kUsualFile = kKnownModels.front().file;
 
 class ModelLocator : public ::testing::Test {
  protected:
@@ -45,28 +49,28 @@ class ModelLocator : public ::testing::Test {
 };
 
 TEST_F(ModelLocator, prefers_the_model_folder_to_the_cache) {
-  make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
-  const std::string expected = make(std::string("models/") + kDefaultModelFile);
+  make("xdg/rtd-slam/" + kUsualFile);
+  const std::string expected = make(std::string("models/") + kUsualFile);
   EXPECT_EQ(find_model("", all()).path, expected);
 }
 
 TEST_F(ModelLocator, looks_in_the_cache_next) {
-  const std::string expected = make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
-  make(std::string("home/.cache/rtd-slam/") + kDefaultModelFile);
+  const std::string expected = make("xdg/rtd-slam/" + kUsualFile);
+  make(std::string("home/.cache/rtd-slam/") + kUsualFile);
   EXPECT_EQ(find_model("", all()).path, expected);
 }
 
 TEST_F(ModelLocator, uses_the_home_folder_when_no_cache_is_set) {
-  const std::string expected = make(std::string("home/.cache/rtd-slam/") + kDefaultModelFile);
+  const std::string expected = make(std::string("home/.cache/rtd-slam/") + kUsualFile);
   EXPECT_EQ(find_model("", environment({{"HOME", in_folder("home")}, {"XDG_CACHE_HOME", ""}})).path, expected);
 }
 
 TEST_F(ModelLocator, looks_last_in_the_folders_for_all_users) {
-  const std::string second = make(std::string("share/rtd-slam/models/") + kDefaultModelFile);
+  const std::string second = make(std::string("share/rtd-slam/models/") + kUsualFile);
   EXPECT_EQ(find_model("", environment({})).path, second);
-  const std::string first = make(std::string("local/rtd-slam/models/") + kDefaultModelFile);
+  const std::string first = make(std::string("local/rtd-slam/models/") + kUsualFile);
   EXPECT_EQ(find_model("", environment({})).path, first);
-  const std::string cached = make(std::string("xdg/rtd-slam/") + kDefaultModelFile);
+  const std::string cached = make("xdg/rtd-slam/" + kUsualFile);
   EXPECT_EQ(find_model("", all()).path, cached);
 }
 
@@ -76,13 +80,13 @@ TEST_F(ModelLocator, finds_another_file_name_in_the_same_folders) {
 }
 
 TEST_F(ModelLocator, takes_a_path_as_it_is) {
-  make(std::string("models/") + kDefaultModelFile);
+  make(std::string("models/") + kUsualFile);
   const std::string expected = make("elsewhere/mine.onnx");
   EXPECT_EQ(find_model(expected, all()).path, expected);
 }
 
 TEST_F(ModelLocator, does_not_fall_back_when_the_configured_path_is_missing) {
-  make(std::string("models/") + kDefaultModelFile);
+  make(std::string("models/") + kUsualFile);
   const ModelSearch search = find_model(in_folder("missing.onnx"), all());
   EXPECT_FALSE(search);
   EXPECT_THAT(search.message, AllOf(HasSubstr("missing.onnx"), HasSubstr("deploy/setup.sh --models")));
@@ -96,12 +100,36 @@ TEST_F(ModelLocator, says_where_it_looked_and_what_to_run) {
 }
 
 TEST_F(ModelLocator, does_not_take_a_folder_for_a_file) {
-  std::filesystem::create_directories(folder_ / "models" / kDefaultModelFile);
+  std::filesystem::create_directories(folder_ / "models" / kUsualFile);
   EXPECT_FALSE(find_model("", all()));
 }
 
 TEST_F(ModelLocator, works_without_any_environment) {
   EXPECT_THAT(find_model("", environment({})).message, HasSubstr("deploy/setup.sh --models"));
+}
+
+TEST_F(ModelLocator, takes_the_first_of_the_usual_networks_and_none_under_the_gpl) {
+  make("models/v5lite-s-raw-480x640.onnx");
+  EXPECT_FALSE(find_model("", all()));
+  const std::string second = make("models/nanodet_g.onnx");
+  EXPECT_EQ(find_model("", all()).path, second);
+  const std::string first = make("models/permissive/yolox_nano.onnx");
+  EXPECT_EQ(find_model("yolox-nano", all()).path, first);
+}
+
+TEST_F(ModelLocator, finds_a_known_network_by_its_name) {
+  const std::string paper = make("xdg/rtd-slam/v5lite-s-raw-480x640.onnx");
+  EXPECT_EQ(find_model("yolov5-lite", all()).path, paper);
+  EXPECT_THAT(find_model("nanodet-g", all()).message,
+              AllOf(HasSubstr("nanodet_g.onnx"), HasSubstr("`deploy/setup.sh --models`")));
+  EXPECT_THAT(find_model("yolov5-lite", environment({})).message,
+              HasSubstr("deploy/setup.sh --models --model yolov5-lite"));
+}
+
+TEST(ModelTable, names_weights_and_licence) {
+  EXPECT_EQ(describe_model("/any/where/yolox_nano.onnx"), "YOLOX-nano, Apache-2.0");
+  EXPECT_EQ(describe_model("v5lite-s-raw-480x640.onnx"), "YOLOv5-Lite s, GPL-3.0");
+  EXPECT_EQ(describe_model("mine/own.onnx"), "own.onnx, licence not known");
 }
 
 TEST(KernelCache, lies_in_the_cache_of_the_user) {
