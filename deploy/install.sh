@@ -84,7 +84,7 @@ as_root apt-get update -qq
 apt install --no-install-recommends "${files[@]}"
 
 weights=/usr/local/share/rtd-slam/models
-if [ "$models" -eq 1 ] && ! compgen -G "$weights/*.onnx" >/dev/null; then
+if [ "$models" -eq 1 ] && [ ! -f "$weights/yolox_nano.onnx" ] && [ ! -f "$weights/nanodet_g.onnx" ]; then
   # The weights are others' work under another licence: fetched, not packaged.
   "$root/deploy/setup.sh" --models
   found="$("$root/deploy/setup.sh" --product --check | sed -n 's/^detector weights: \(\/.*\)/\1/p' || true)"
@@ -93,6 +93,12 @@ if [ "$models" -eq 1 ] && ! compgen -G "$weights/*.onnx" >/dev/null; then
     [ ! -f "$found.licence.txt" ] || as_root install -m 644 -t "$weights" "$found.licence.txt"
     echo "install: detector weights in $weights"
   fi
+fi
+
+runtime="$root/build/onnxruntime/lib/libonnxruntime.so" # of deploy/setup.sh, where npm is there
+if [ -f "$runtime" ]; then
+  as_root install -D -m 644 -t /usr/local/lib/rtd-slam "$runtime"
+  echo "install: ONNX Runtime in /usr/local/lib/rtd-slam"
 fi
 
 if [ -z "$source" ]; then

@@ -33,10 +33,11 @@ def perturbation(run: int) -> list:
     return ["--first-frame", str(run % 10), "--set", f"filter.orb.feature_count={features}"]
 
 
-def command(clip: str, mode: str, run: int, settings: list, folder: pathlib.Path) -> list:
+def command(clip: str, mode: str, run: int, settings: list, folder: pathlib.Path, model: str) -> list:
     task = [str(stress.PROGRAM), "--source", clip, "--mode", mode, *perturbation(run)]
     if mode in WITH_DETECTOR:
-        task += ["--detector", "real", "--detections", str(folder / (pathlib.Path(clip).name + ".detections"))]
+        known = folder / f"{pathlib.Path(clip).name}.{pathlib.Path(model).name}.detections"
+        task += ["--detector", "real", "--detector-model", model, "--detections", str(known)]
         task += ["--detector-seed", str(run), "--detector-jitter", "0" if run == 0 else str(JITTER)]
     for setting in settings:
         task += ["--set", setting]
@@ -70,6 +71,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--modes", default="rtd,semantic,geometry,true-mask")
     parser.add_argument("--runs", type=int, default=9)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
+    parser.add_argument("--model", default="yolov5-lite", help="the detector's network, as --model of rtd run")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=pathlib.Path, default=stress.ROOT / "build/perturbed")
     return parser.parse_args()
@@ -88,7 +90,7 @@ def main() -> int:
         for clip in options.clips:
             for mode in options.modes.split(","):
                 name = pathlib.Path(clip).name
-                tasks = [command(clip, mode, run, options.set, options.out) for run in range(options.runs)]
+                tasks = [command(clip, mode, run, options.set, options.out, options.model) for run in range(options.runs)]
                 # The first run asks the detector, the others remember its answers.
                 results = [stress.run({"clip": name, "mode": mode, "run": 0}, tasks[0])]
                 results += pool.map(lambda run: stress.run({"clip": name, "mode": mode, "run": run}, tasks[run]),

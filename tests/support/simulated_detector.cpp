@@ -10,7 +10,6 @@
 
 #include "common/camera/synthetic/texture.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "tests/support/remembered_detections.hpp"
@@ -128,7 +127,7 @@ Boxes lie(const camera::SourceFrame& frame, const DetectorOptions& options) {
 }
 
 Look real_look(const DetectorOptions& options) {
-  const service::ModelSearch model = service::find_model(service::kPaperModel, service::process_environment());
+  const service::ModelSearch model = service::find_model(options.model, service::process_environment());
   if (!model) throw std::invalid_argument(model.message);
   detector::DetectorConfig config;
   config.model_path = model.path;

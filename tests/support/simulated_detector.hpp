@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
+#include "common/service/model_table.hpp"
 #include "common/vision/detection.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector_config.hpp"
@@ -40,6 +41,7 @@ struct DetectorOptions {
   double cut_share = 0;          ///< truth: boxes that lack a fifth to a half at one side
   int min_visible_px = 900;      ///< truth: less of an object is not found
   int max_lies = 8;              ///< lying: boxes of one image
+  std::string model = service::kPaperModel;  ///< real: as `--model` of rtd run
   /// real: least score
   double confidence = detector::DecodeConfig{}.confidence_threshold;
   /// real: on the image turned upright, as rtd-detector does; none = as it is

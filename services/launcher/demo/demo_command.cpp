@@ -84,8 +84,8 @@ int compare(const std::string& out_dir, const std::string& page) {
        "--label", "static points (--filter rtd)", "--page", page});
 }
 
-void print_next_steps(const std::string& page) {
-  std::cout << "\n  both trajectories: " << page << "\n\n  next:\n"
+void print_next_steps(const std::string& page, const std::string& detector) {
+  std::cout << "\n  detector weights: " << detector << "\n  both trajectories: " << page << "\n\n  next:\n"
             << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence, at its "
                "recorded pace\n"
             << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
@@ -105,7 +105,7 @@ int run_both(const DemoOptions& options, const std::string& source) {
 
   const std::string page = (fs::path(options.out_dir) / "demo.html").string();
   if (compare(options.out_dir, page) != 0) return service::kRunFailed;
-  print_next_steps(page);
+  print_next_steps(page, with.detector);
   return with.code;
 }
 

@@ -110,7 +110,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   print_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
 
-  RunResult result;
+  RunResult result{.detector = setup.detector_note};
   begin_trace(setup);
   const RunOutcome outcome = session.run(plans);
   end_trace(setup, terminal);

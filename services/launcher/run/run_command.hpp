@@ -14,6 +14,7 @@ enum class ReportState { kNone, kWritten, kFailed };
 struct RunResult {
   service::ExitCode code = service::kRunFailed;
   ReportState report = ReportState::kNone;
+  std::string detector;  ///< weights and their licence, or why there is none
 };
 
 /// `rtd run`: checks, starts, supervises, reports. Prints progress to stderr, the summary to stdout. Never throws for

@@ -128,6 +128,7 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       ->check(CLI::Range(rtd::test_support::kLeastRecall, 1.0));
   app.add_option("--detector-cut", detector.cut_share, "truth: share of the boxes that lack a part at one side")
       ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--detector-model", detector.model, "real: its network")->capture_default_str();
   app.add_option("--detector-confidence", detector.confidence, "real: least score");
   CLI::Option* derotate = app.add_option_function<double>(
       "--derotate",

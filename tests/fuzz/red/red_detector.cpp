@@ -10,7 +10,9 @@
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/detector/core/camera_roll.hpp"
+#include "services/detector/core/decoders/nanodet.hpp"
 #include "services/detector/core/decoders/yolov5.hpp"
+#include "services/detector/core/decoders/yolox.hpp"
 #include "services/detector/core/network_input.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"
@@ -22,7 +24,7 @@ namespace {
 using testing::SmallFrames;
 
 constexpr InputSize kInput{160, 128};
-constexpr int kClasses = 8;
+constexpr int kClasses = 8, kBins = 7;  // 3 (5 + classes) planes are more than classes + 4 bins
 
 /// One head of a network's answer, of which each number is anything.
 struct Answer {
@@ -75,11 +77,19 @@ class Attack {
     fill_blob(image, fit_letterbox(image.size(), kInput), kInput, PixelFormat(), blob_);
     fill_upright_blob(image, view, PixelFormat(), blob_);
     const Answer answer = make_answer();
-    const DecodeConfig config;
-    for (const Candidate& candidate : suppress_non_maxima(decode_heads({answer.head}, kClasses, config), config)) {
+    check(decode_heads({answer.head}, kClasses, {}), view, image.size());
+    check(decode_nanodet({{answer.logits.data(), answer.head.rows, answer.head.cols, 16, kBins}}, kClasses, {}), view,
+          image.size());
+    check(decode_yolox(make_numbers(kInput.width_px * kInput.height_px / 32 * (5 + kClasses)), kInput, kClasses, {}),
+          view, image.size());
+  }
+
+  /// Boxes lie within the frame, whatever the network says.
+  void check(const std::vector<Candidate>& found, const UprightView& view, cv::Size frame) {
+    for (const Candidate& candidate : suppress_non_maxima(found, {})) {
       const cv::Rect2f box = box_in_frame(candidate, view);
-      const bool inside = box.x >= 0 && box.y >= 0 && box.br().x <= static_cast<float>(image.cols) + 0.5F &&
-                          box.br().y <= static_cast<float>(image.rows) + 0.5F;
+      const bool inside = box.x >= 0 && box.y >= 0 && box.br().x <= static_cast<float>(frame.width) + 0.5F &&
+                          box.br().y <= static_cast<float>(frame.height) + 0.5F;
       if (!inside && broken_++ == 0)
         std::fprintf(stderr, "a box of %g x %g at %g, %g is not within the frame\n", static_cast<double>(box.width),
                      static_cast<double>(box.height), static_cast<double>(box.x), static_cast<double>(box.y));
@@ -89,13 +99,17 @@ class Attack {
   Answer make_answer() {
     Answer answer;
     answer.head = {nullptr, kInput.height_px / 16, kInput.width_px / 16, {16, {{{10, 13}, {16, 30}, {33, 23}}}}};
-    answer.logits.resize(static_cast<std::size_t>(answer.head.rows * answer.head.cols) * 3 * (5 + kClasses));
-    const double spread = attacker_.one_in(2) ? 8 : 0.5;
-    for (float& logit : answer.logits) logit = static_cast<float>(attacker_.between(-spread, spread));
-    for (std::uint64_t i = attacker_.below(60); i > 0; --i)
-      attacker_.spoil(answer.logits[attacker_.below(answer.logits.size())]);
+    answer.logits = make_numbers(answer.head.rows * answer.head.cols * 3 * (5 + kClasses));
     answer.head.logits = answer.logits.data();
     return answer;
+  }
+
+  std::vector<float> make_numbers(int count) {
+    std::vector<float> numbers(static_cast<std::size_t>(count));
+    const double spread = attacker_.one_in(2) ? 8 : 0.5;
+    for (float& number : numbers) number = static_cast<float>(attacker_.between(-spread, spread));
+    for (std::uint64_t i = attacker_.below(60); i > 0; --i) attacker_.spoil(numbers[attacker_.below(numbers.size())]);
+    return numbers;
   }
 
   testing::RedWatch& watch_;
