@@ -132,8 +132,8 @@ ProgramTask task_of(const BenchmarkOptions& options, const BenchmarkPlan& plan, 
     const fs::path file = detections_file(options, plan, planned);
     std::error_code ignored;
     if (!fs::exists(file, ignored)) task.first_of = file.string();
-    add({"--detector", "real", "--detections", file.string(), "--detector-seed", std::to_string(planned.run),
-         "--detector-jitter", planned.run == 0 ? "0" : "0.03"});
+    add({"--detector", "real", "--detector-model", plan.model, "--detections", file.string(), "--detector-seed",
+         std::to_string(planned.run), "--detector-jitter", planned.run == 0 ? "0" : "0.03"});
   } else {
     add({"--detector", "off"});
   }
