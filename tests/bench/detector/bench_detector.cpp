@@ -9,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/network.hpp"
 #include "services/detector/core/network_input.hpp"
@@ -16,11 +17,13 @@
 namespace rtd::detector {
 namespace {
 
+/// The network and the engine of docs/results.md.
 DetectorConfig config_or_skip(benchmark::State& state) {
-  const service::ModelSearch model = service::find_model("", service::process_environment());
+  const service::ModelSearch model = service::find_model(service::kPaperModel, service::process_environment());
   if (!model) state.SkipWithError(model.message.c_str());
   DetectorConfig config;
   config.model_path = model.path;
+  config.engine = "cpu";
   return config;
 }
 
