@@ -122,7 +122,8 @@ fetch_models() {
     echo "setup: detector weights: $found"
   elif ! "$root/deploy/fetch_model.sh" "${accept_hash[@]}" ${model:+"$model"}; then
     echo "setup: no detector weights: RTD-SLAM still runs, with geometry only." >&2
-    echo "setup: to add them, run deploy/setup.sh --models, or put $(model_files) into RTD_MODEL_DIR" >&2
+    echo "setup: to add them, run deploy/setup.sh --models${model:+ --model $model}," \
+      "or put $(model_files | sed 's/ / or /') into RTD_MODEL_DIR" >&2
   fi
 }
 
@@ -190,7 +191,7 @@ check() {
     echo "packages: all ${#packages[@]} installed"
   fi
   found="$(model_path)"
-  echo "detector weights: ${found:-none (geometry only; get them with deploy/setup.sh --models)}"
+  echo "detector weights: ${found:-none (geometry only; get them with deploy/setup.sh --models${model:+ --model $model})}"
   exit "$status"
 }
 
