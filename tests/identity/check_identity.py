@@ -66,7 +66,8 @@ def lockstep_run(rtd: str, data: pathlib.Path, clip: str, out: pathlib.Path) -> 
     """Runs the whole system, four processes, on one clip."""
     saved_map = out / "map.rtdmap"
     run([rtd, "run", "--source", f"tum:{data / clip}", "--pace", "lockstep", "--filter", "rtd", "--quiet",
-         "--model", MODEL, "--engine", "cpu", "--out", str(out / "run"), "--save-map", str(saved_map), "--domain", str(20 + os.getpid() % 60)], 300)
+         "--model", MODEL, "--engine", "cpu", "--out", str(out / "run"), "--save-map", str(saved_map),
+         "--domain", str(20 + os.getpid() % 60)], 300)
     return {f"trajectory {clip}": sha256(out / "run" / "trajectory.txt"), f"map {clip}": sha256(saved_map)}
 
 

@@ -96,7 +96,8 @@ class FetchModel(unittest.TestCase):
         result = self.fetch(hashlib.sha256(self.server.body).hexdigest())
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(sorted(p.name for p in self.cache.iterdir()), [MODEL, MODEL + ".licence.txt"])
-        self.assertRegex((self.cache / (MODEL + ".licence.txt")).read_text(), r"YOLOv5-Lite s by ppogg, GPL-3.0\nSource")
+        licence = (self.cache / (MODEL + ".licence.txt")).read_text()
+        self.assertRegex(licence, r"YOLOv5-Lite s by ppogg, GPL-3.0\nSource")
         network = cv2.dnn.readNetFromONNX(str(self.cache / MODEL))
         self.assertEqual(list(network.getUnconnectedOutLayersNames()), ["p3", "p4", "p5"])
 
@@ -160,11 +161,13 @@ class FetchModel(unittest.TestCase):
         self.assert_refused(self.fetch(arguments=("--accept-hash",)), "(?s)cannot be read.*not YOLOX-nano")
 
     def test_takes_nanodet_where_yolox_cannot_be_downloaded_and_checks_it(self):
-        self.give_npm('cd "$4" && mkdir -p p/package/models && cd p && touch package/LICENSE package/models/nanodet.{json,bin} && '
+        self.give_npm('cd "$4" && mkdir -p p/package/models && cd p && '
+                      'touch package/LICENSE package/models/nanodet.{json,bin} && '
                       'tar czf "$4/human.tgz" package && cd .. && rm -r p')  # fmt: skip
         result = self.fetch(arguments=())
         self.assertRegex(result.stdout, "taking NanoDet-g in its place")
-        self.assert_refused(result, "(?s)does not have http.*wrong checksum of nanodet.json: e3b0c442.*expected 4495eb0e")
+        expected = "(?s)does not have http.*wrong checksum of nanodet.json: e3b0c442.*expected 4495eb0e"
+        self.assert_refused(result, expected)
 
     def test_says_when_npm_cannot_fetch_the_package(self):
         self.give_npm("exit 1")
