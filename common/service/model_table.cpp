@@ -7,6 +7,12 @@
 
 namespace rtd::service {
 
+std::string known_model_names() {
+  std::string text;
+  for (const KnownModel& model : kKnownModels) text += (text.empty() ? "" : ", ") + std::string(model.name);
+  return text;
+}
+
 const KnownModel* find_known_model(const std::string& name_or_path) {
   const std::string file = std::filesystem::path(name_or_path).filename().string();
   const auto found = std::ranges::find_if(

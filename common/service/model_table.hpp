@@ -7,7 +7,8 @@
 
 namespace rtd::service {
 
-/// A network that `deploy/setup.sh` fetches.
+/// A network that `deploy/setup.sh` fetches. The scripts in deploy/ repeat names and files;
+/// tests/unit/docs/lists_test.py compares them.
 struct KnownModel {
   const char* name;     ///< of `--model`
   const char* file;     ///< that setup.sh makes of it
@@ -24,6 +25,9 @@ inline constexpr std::array<KnownModel, 3> kKnownModels = {{
 
 /// The network of the RTD-SLAM paper: what mode rtd-paper uses where it is there.
 inline constexpr const char* kPaperModel = "yolov5-lite";
+
+/// The names of all known networks: "yolox-nano, nanodet-g, yolov5-lite".
+std::string known_model_names();
 
 /// The known network that a configured name or a path means; null for all others.
 const KnownModel* find_known_model(const std::string& name_or_path);

@@ -6,6 +6,7 @@
 
 #include "common/msg/engine_names.hpp"
 #include "common/msg/filter_modes.hpp"
+#include "common/service/model_table.hpp"
 
 /// The settings of services that are options of `rtd run`, too: the service and the launcher bind them by this, so key,
 /// range, default, help and option are declared once.
@@ -103,8 +104,8 @@ void bind_filter_mode(auto& binder, std::string& mode) {
 void bind_model(auto& binder, std::string& model) {
   binder
       .field("model", model,
-             "the network: yolox-nano, nanodet-g, yolov5-lite, or an ONNX file: a path, or a name looked for in "
-             "RTD_MODEL_DIR and the user's cache")
+             "the network: " + known_model_names() +
+                 ", or an ONNX file: a path, or a name looked for in RTD_MODEL_DIR and the user's cache")
       .option("--model", "Dynamic points");
 }
 /// Of section `detector`.

@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Checks that each list stands once in the code, and that the copies which people read agree with it.
 
-The lists: filter modes, services, schemes of sources, names of metrics, how the forms of recordings begin and end, and
-the options that several processes take.
+The lists: filter modes, services, schemes of sources, names of metrics, how the forms of recordings begin and end, the
+known networks, and the options that several processes take.
 Tests are not searched: they write out what they expect.
 """
 import pathlib
@@ -13,7 +13,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 MODES, SERVICES = "common/msg/filter_modes.hpp", "common/msg/services.hpp"
-SCHEMES = "common/camera/source_schemes.hpp"
+SCHEMES, MODELS = "common/camera/source_schemes.hpp", "common/service/model_table.hpp"
 METRICS, FORMS = "common/service/metric_names.hpp", "common/io/recording_forms.hpp"
 OPTIONS = ("common/service/run_settings.hpp", "common/service/bus_config.hpp", "common/bus/bus_factory.hpp")
 SOURCES = sorted(path.relative_to(ROOT).as_posix() for folder in ("common", "services")
@@ -67,6 +67,26 @@ def lists_schemes(text):
                for part in [*literals(text).split("\n"), *in_row])
 
 
+class Model:
+    """A row of the table of networks."""
+
+    def __init__(self, name, file, title, licence, usual):
+        self.name, self.file, self.title, self.licence, self.usual = name, file, title, licence, usual == "true"
+
+
+def models():
+    row = re.compile(r'^ +\{"([^"]+)", "([^"]+)", "([^"]+)", "([^"]+)", (true|false)\}', re.MULTILINE)
+    return [Model(*values) for values in row.findall(text_of(MODELS))]
+
+
+def usual_files():
+    return [model.file for model in models() if model.usual]
+
+
+def lists_models(text):
+    return any(writes_all(text, words) for words in ([model.name for model in models()], usual_files()))
+
+
 def metric_literals(text):
     return ["".join(groups) for groups in METRIC_CALL.findall(without_comments(text))]
 
@@ -95,6 +115,12 @@ class Lists(unittest.TestCase):
     def test_schemes_of_sources_stand_once(self):
         self.assertGreaterEqual(len(rows(SCHEMES)), 8)
         self.assert_none_but(SCHEMES, lists_schemes)
+
+    def test_models_stand_once(self):
+        self.assertEqual(len(models()), len(rows(MODELS)))
+        self.assertGreaterEqual(len(models()), 3)
+        self.assertFalse([model.name for model in models() if model.usual and "GPL" in model.licence])
+        self.assert_none_but(MODELS, lists_models)
 
     def test_services_stand_once(self):
         self.assertGreaterEqual(len(rows(SERVICES)), 9)
@@ -132,11 +158,33 @@ class Lists(unittest.TestCase):
         in_texts = re.search(r"^SERVICES = \((.*)\)", text_of("tests/identity/check_texts.py"), re.MULTILINE).group(1)
         self.assertEqual(sorted(LITERAL.findall(in_texts)), sorted(rows(SERVICES)))
 
+    def test_copies_of_the_models_agree(self):
+        setup, fetch, install = (text_of(f"deploy/{name}.sh") for name in ("setup", "fetch_model", "install"))
+        self.assertEqual(dict(re.findall(r"^ +([\w-]+)\) echo (\S+\.onnx) ;;", setup, re.MULTILINE)),
+                         {model.name: model.file for model in models()})
+        self.assertIn(f"'') echo {' '.join(usual_files())} ;;", setup)
+        self.assertEqual(re.findall(r'"\$weights/([\w.-]+\.onnx)"', install), usual_files())
+        *others, last = [model.name for model in models()]
+        for text in (setup, fetch):
+            self.assertIn(f"use {', '.join(others)} or {last}\"", text)
+        self.assertIn(f'already "${{name:-{models()[0].name}}}"', fetch)
+        choices = re.findall(r"^    ([\w-]+)\)\n", fetch, re.MULTILINE)
+        self.assertEqual(choices, [model.name for model in models()])
+        page = text_of("services/detector/README.md")
+        for model in models():
+            choice = re.search(rf"^    {model.name}\)\n(.*?);;", fetch, re.MULTILINE | re.DOTALL).group(1)
+            self.assertIn(f"model={model.file}\n", choice)
+            self.assertRegex(choice, rf'title="{model.title} by \w+, {model.licence}[",]')
+            self.assertIn(f"{model.name} ({model.licence}", setup)
+            self.assertRegex(page, rf"(?m)^\| `{model.name}`.*\| `{model.file}`.*\|.*, {model.licence} \|$")
+
     def test_a_second_list_would_be_found(self):
         self.assertTrue(lists_modes('const kModes = ["off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"];'))
         self.assertTrue(lists_modes('help = "off, semantic, geometry, "\n    "epipolar, rtd-paper or rtd";'))
         self.assertTrue(lists_schemes('"tum:FOLDER, bag:FILE, db3:FILE or mcap:FILE"'))
         self.assertTrue(lists_schemes('known = {"tum", "bag", "db3", "mcap"};'))
+        self.assertTrue(lists_models('help = "yolox-nano, nanodet-g or yolov5-lite";'))
+        self.assertTrue(lists_models('for (const char* file : {"yolox_nano.onnx", "nanodet_g.onnx"})'))
         in_row = literals_in_row('for (auto s : {"camera", "detector",\n "filter", "slam"})')
         self.assertTrue(SERVICES_IN_ROW.search(in_row))
         self.assertTrue(FORM.search('if (begin.starts_with("SQLite format 3"))'))
