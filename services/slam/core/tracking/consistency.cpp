@@ -45,7 +45,7 @@ void Consistency::add(const Frame& frame, const LocalMap& map, const LocalMapTra
 bool Consistency::doubts(double sigma_m) {
   constexpr double kHysteresis = 1.1;
   constexpr double kLargest_m = 0.02;  // 2.5 of them are the 5 cm of docs/integrity.md
-  constexpr double kAgreement = 0.7, kGrows = 6;
+  constexpr double kAgreement = 0.7, kGrows = 7;
   if (config_.doubtful_below == 0) return false;
   contradicted_ = value_ < config_.doubtful_below * (contradicted_ ? kHysteresis : 1.0);
   uncertain_ = sigma_m * std::exp(kGrows * (kAgreement - value_)) > kLargest_m / (uncertain_ ? kHysteresis : 1.0);

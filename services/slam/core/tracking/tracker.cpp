@@ -230,9 +230,9 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   const bool had_pose = msg::has_pose(state_);
   state_ = msg::TrackingState::kOk;
   outcome.consistency = consistency_.value();
-  const geometry::Matrix6d local =
-      config_.sensor.shared_error * tracking.guess.covariance + consistency_.covariance(scene_m_);
-  outcome.sigma_m = geometry::largest_sigma(local.topLeftCorner<3, 3>());
+  const geometry::Matrix6d measured = config_.sensor.shared_error * tracking.guess.covariance;
+  const geometry::Matrix6d local = measured + consistency_.covariance(scene_m_);
+  outcome.sigma_m = geometry::largest_sigma(measured.topLeftCorner<3, 3>());
   outcome.state = consistency_.doubts(outcome.sigma_m) ? msg::TrackingState::kDoubtful : state_;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;

@@ -44,7 +44,7 @@ struct TrackOutcome {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
-  double sigma_m = 0;      ///< of the position in the local map, along the worst axis, where a pose is measured there
+  double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
   std::array<float, msg::kSlamStages> stage_ms{};
 
   /// A place was recognised and is not confirmed yet.
