@@ -24,6 +24,14 @@ struct BodyPart {
   Material material = Material::kPlain;
 };
 
+/// A piece of a limb between two joints.
+struct Bone {
+  float length_m, radius_m;
+  float turned_rad;  ///< from hanging down, positive backwards
+  Material material = Material::kPlain;
+};
+constexpr float kJointOverlap = 0.6F;  ///< of the radius
+
 }  // namespace
 
 /// Where the parts of one figure go.
@@ -45,6 +53,15 @@ struct Figure::Placing {
     geometry.ellipsoids.push_back(
         {T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object, part.material});
   }
+  /// Hangs an ellipsoid below a joint at `from_m`, turned about it; the other end.
+  Vector3f hang(const Vector3f& from_m, const Bone& bone, int texture, bool moving) {
+    const Vector3f along(-std::sin(bone.turned_rad), 0, -std::cos(bone.turned_rad));
+    const Vector3f center_m = from_m + bone.length_m / 2 * along;
+    const Vector3f semi_axes_m(bone.radius_m, bone.radius_m / breadth,
+                               bone.length_m / 2 + bone.radius_m * kJointOverlap);
+    add({center_m, semi_axes_m, bone.turned_rad, center_m.z(), bone.material}, texture, moving);
+    return from_m + bone.length_m * along;
+  }
   void add_above_hips(BodyPart part, int texture, bool moving) {
     part.center_m += hip_shift_m;
     part.joint_height_m += hip_shift_m.z();
@@ -56,16 +73,24 @@ ColorBgr vivid_color(SeededRandom& random) {
   return {random.between(30, 200), random.between(30, 200), random.between(30, 200)};
 }
 
-Figure::Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth) : breadth_(breadth) {
+Figure::Figure(std::uint64_t seed, FigureLook look, std::vector<Texture>& textures, float breadth) : breadth_(breadth) {
   SeededRandom random(seed ^ 0x9E450AULL);
   height_scale_ = random.between(0.92F, 1.08F);
   step_rate_rad_s_ = kTwoPiF * random.between(0.8F, 1.0F);
+  if (look == FigureLook::kDrawn) {
+    drawn_ = draw_person(seed, breadth, textures);
+  } else {
+    paint_plain(random, textures);
+  }
+}
+
+void Figure::paint_plain(SeededRandom& random, std::vector<Texture>& textures) {
   const TextureStyle skin{{120, 150, 205}, 5, 25, 0.02F, 0.05F, 0.15F};
   const TextureStyle shirt{vivid_color(random), 9, 45, 0.04F, 0.25F, 0.75F};
   const TextureStyle trousers{vivid_color(random), 9, 30, 0.03F, 0.12F, 0.35F};
   skin_texture_ = add_texture(textures, 0.25F, 0.3F, kFigureTexelsPerM, skin, random.next());
-  shirt_texture_ = add_texture(textures, 0.6F * breadth, 0.75F, kFigureTexelsPerM, shirt, random.next());
-  trousers_texture_ = add_texture(textures, 0.25F * breadth, 0.9F, kFigureTexelsPerM, trousers, random.next());
+  shirt_texture_ = add_texture(textures, 0.6F * breadth_, 0.75F, kFigureTexelsPerM, shirt, random.next());
+  trousers_texture_ = add_texture(textures, 0.25F * breadth_, 0.9F, kFigureTexelsPerM, trousers, random.next());
 }
 
 void Figure::append_to(Geometry& geometry, const Posture& posture) const {
@@ -76,6 +101,11 @@ void Figure::append_to(Geometry& geometry, const Posture& posture) const {
   Placing placing{geometry,           T_world_person,    height_scale_,
                   breadth_,           hip_shift_m,       geometry.add_object("person"),
                   posture.body_moves, posture.limbs_move};
+  if (drawn_) {
+    append_drawn_trunk(placing, posture);
+    append_drawn_limbs(placing, posture);
+    return;
+  }
   append_upper_body(placing, posture);
   if (posture.seated > 0) {
     append_bent_legs(placing, thigh_rad);
@@ -117,6 +147,45 @@ void Figure::append_bent_legs(Placing& placing, float thigh_rad) const {
     placing.add(
         {knee_m + Vector3f(0, 0, kThighM / 2), {0.08F, 0.08F, 0.26F}, -thigh_rad, kKneeHeightM, Material::kDark},
         trousers_texture_, placing.body_moves);
+  }
+}
+
+void Figure::append_drawn_trunk(Placing& placing, const Posture& posture) const {
+  const PersonTextures& look = *drawn_;
+  const bool body = placing.body_moves, limbs = placing.limbs_move;
+  const float nod_rad = 0.5F * posture.fidget_rad, slim = 1 / breadth_;
+  placing.add_above_hips({{0.02F, 0, 1.63F}, {0.100F, 0.080F * slim, 0.125F}, nod_rad, 1.5F, Material::kHead},
+                         look.head, limbs);
+  placing.add_above_hips({{-0.014F, 0, 1.645F}, {0.096F, 0.088F * slim, 0.12F}, nod_rad, 1.5F, Material::kDark},
+                         look.hair, limbs);
+  placing.add_above_hips({{0, 0, 1.48F}, {0.052F, 0.055F * slim, 0.10F}}, look.skin, body);
+  placing.add_above_hips({{-0.005F, 0, 1.395F}, {0.078F, 0.205F, 0.075F}}, look.cloth, body);  // shoulders
+  placing.add_above_hips({{0, 0, 1.23F}, {0.12F, 0.185F, 0.25F}}, look.chest, body);
+  placing.add_above_hips({{0, 0, 1.04F}, {0.112F, 0.165F, 0.20F}}, look.cloth, body);  // waist
+  placing.add_above_hips({{-0.005F, 0, 0.91F}, {0.13F, 0.178F, 0.16F}, 0, 0, Material::kDark}, look.hips, body);
+}
+
+void Figure::append_drawn_limbs(Placing& placing, const Posture& posture) const {
+  constexpr float kElbowRad = -0.3F, kKneeRad = 0.25F, kAnkleM = 0.07F;
+  const PersonTextures& look = *drawn_;
+  const float thigh_rad = kSeatedThighRad * posture.seated, swing = posture.swing * (1 - posture.seated);
+  for (const float side : {-1.0F, 1.0F}) {
+    const bool body = placing.body_moves, limbs = placing.limbs_move;
+    const float arm_rad =
+        -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
+    const float leg_rad = side * swing * kLegSwingRad - thigh_rad;
+    const float shin_rad = (1 - posture.seated) * (leg_rad + kKneeRad * std::abs(swing));
+    const Vector3f shoulder_m = Vector3f(0, side * 0.215F, 1.40F) + placing.hip_shift_m;
+    const Vector3f elbow_m = placing.hang(shoulder_m, {0.29F, 0.052F, arm_rad}, look.cloth, limbs);
+    const Vector3f wrist_m = placing.hang(elbow_m, {0.25F, 0.041F, arm_rad + kElbowRad}, look.forearm, limbs);
+    placing.hang(wrist_m, {0.14F, 0.040F, arm_rad + kElbowRad}, look.skin, limbs);  // hand
+    const Vector3f hip_m = Vector3f(0, side * 0.09F, kHipHeightM) + placing.hip_shift_m;
+    const Vector3f knee_m = placing.hang(hip_m, {kThighM, 0.083F, leg_rad, Material::kDark}, look.leg, body);
+    const Vector3f ankle_m =
+        placing.hang(knee_m, {kKneeHeightM - kAnkleM, 0.062F, shin_rad, Material::kDark}, look.leg, body);
+    placing.add(
+        {ankle_m + Vector3f(0.055F, 0, -0.02F), {0.13F, 0.047F, 0.052F}, shin_rad, ankle_m.z(), Material::kDark},
+        look.shoe, body);
   }
 }
 

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
+#include "common/camera/synthetic/figure_paint.hpp"
 #include "common/camera/synthetic/geometry.hpp"
 #include "common/camera/synthetic/texture.hpp"
 
@@ -24,23 +26,31 @@ struct Posture {
   bool limbs_move = true;                                ///< arms and head
 };
 
+/// Plain: few ellipsoids with noise and patches on them. Drawn: a person with face, hair, hands, joints and clothes.
+enum class FigureLook { kPlain, kDrawn };
+
 /// What a figure looks like, painted by its seed: a person of ellipsoids (head, torso, hips, arms, legs).
 class Figure {
  public:
   /// Adds its textures to `textures`. `breadth` scales it from side to side: a wide coat.
-  Figure(std::uint64_t seed, std::vector<Texture>& textures, float breadth = 1);
+  Figure(std::uint64_t seed, FigureLook look, std::vector<Texture>& textures, float breadth = 1);
   /// Adds an object of class "person".
   void append_to(Geometry& geometry, const Posture& posture) const;
   float step_rate_rad_s() const { return step_rate_rad_s_; }
 
  private:
   struct Placing;
+  void paint_plain(SeededRandom& random, std::vector<Texture>& textures);
   void append_upper_body(Placing& placing, const Posture& posture) const;
   void append_standing_legs(Placing& placing, float swing) const;
   void append_bent_legs(Placing& placing, float thigh_rad) const;
 
+  void append_drawn_trunk(Placing& placing, const Posture& posture) const;
+  void append_drawn_limbs(Placing& placing, const Posture& posture) const;
+
   float height_scale_, breadth_, step_rate_rad_s_;
-  int skin_texture_, shirt_texture_, trousers_texture_;
+  int skin_texture_ = 0, shirt_texture_ = 0, trousers_texture_ = 0;
+  std::optional<PersonTextures> drawn_;  ///< instead of these
 };
 
 /// A colour that is neither black nor white.

@@ -43,6 +43,11 @@ struct Ellipsoid {
   Material material = Material::kPlain;
 };
 
+/// Whether hair grows at a point of a head, a unit sphere here: its back (x forward) and its top (z up).
+inline bool is_hair(const Eigen::Vector3f& on_sphere) {
+  return on_sphere.z() > 0.45F || (on_sphere.x() < 0.1F && on_sphere.z() > -0.5F);
+}
+
 /// Everything there is to see at one moment.
 struct Geometry {
   std::vector<Face> faces;

@@ -66,8 +66,8 @@ float FloorPath::heading_rad(double t_s) const {
                                        area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
 }
 
-Walker::Walker(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
-    : path_(seed, area, kWalkingSpeedMS), figure_(seed, textures) {}
+Walker::Walker(std::uint64_t seed, const WalkArea& area, FigureLook look, std::vector<Texture>& textures)
+    : path_(seed, area, kWalkingSpeedMS), figure_(seed, look, textures) {}
 
 void Walker::append_to(Geometry& geometry, double t_s) const {
   Posture posture;
@@ -105,8 +105,9 @@ void CarriedBox::append_to(Geometry& geometry, double t_s) const {
                  static_cast<float>(turn_rate_rad_s_ * t_s) + phase_rad_);
 }
 
-Sitter::Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habits, std::vector<Texture>& textures)
-    : figure_(seed, textures), habits_(habits) {
+Sitter::Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habits, FigureLook look,
+               std::vector<Texture>& textures)
+    : figure_(seed, look, textures), habits_(habits) {
   SeededRandom random(seed ^ 0x517ULL);
   const float y_m = random.between(0.2F, 0.5F);
   const double clip_s = habits.sit_s + kRiseS + kWalkS + 4;
@@ -157,8 +158,8 @@ void Sitter::append_to(Geometry& geometry, double t_s) const {
   figure_.append_to(geometry, posture_at(t_s));
 }
 
-Blocker::Blocker(std::uint64_t seed, const CameraPath& camera, std::vector<Texture>& textures)
-    : camera_(camera), figure_(seed, textures, kCoatBreadth) {
+Blocker::Blocker(std::uint64_t seed, const CameraPath& camera, FigureLook look, std::vector<Texture>& textures)
+    : camera_(camera), figure_(seed, look, textures, kCoatBreadth) {
   SeededRandom random(seed ^ 0xB10CULL);
   nearest_m_ = random.between(0.68F, 0.75F);
   farthest_m_ = random.between(2.6F, 3.0F);

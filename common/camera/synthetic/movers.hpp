@@ -42,7 +42,7 @@ class FloorPath {
 class Walker final : public Mover {
  public:
   /// Adds the person's textures to `textures`.
-  Walker(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
+  Walker(std::uint64_t seed, const WalkArea& area, FigureLook look, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
 
  private:
@@ -80,7 +80,8 @@ class Sitter final : public Mover {
     double fidget_rad;  ///< amplitude of arms and head while at rest, 0 = like a statue
   };
   /// The chair stands where the camera looks most.
-  Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habits, std::vector<Texture>& textures);
+  Sitter(std::uint64_t seed, const CameraPath& camera, const Habits& habits, FigureLook look,
+         std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
 
   static constexpr double kRiseS = 1.0, kWalkS = 5.0;
@@ -99,7 +100,7 @@ class Sitter final : public Mover {
 /// A person in a wide coat who comes up to the camera, stays in front of it wherever it goes, and leaves again.
 class Blocker final : public Mover {
  public:
-  Blocker(std::uint64_t seed, const CameraPath& camera, std::vector<Texture>& textures);
+  Blocker(std::uint64_t seed, const CameraPath& camera, FigureLook look, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
 
   static constexpr double kComesS = 1.5, kThereS = 3.0, kGoesS = 5.5, kGoneS = 7.0;

@@ -35,9 +35,9 @@ float unit_sphere_depth(const Eigen::Vector3f& center, const Eigen::Vector3f& ra
   return std::max(0.0F, (-b - std::sqrt(discriminant)) / a);
 }
 
-/// Whether hair grows at a point of a head, a unit sphere here: its back (x forward) and its top (z up).
-bool is_hair(const Eigen::Vector3f& on_sphere) {
-  return on_sphere.z() > 0.45F || (on_sphere.x() < 0.1F && on_sphere.z() > -0.5F);
+/// Where a texture that wraps is seen at a point of the unit sphere, 0..1 from its left.
+float around(const Eigen::Vector3f& on_sphere) {
+  return 0.5F + std::atan2(on_sphere.y(), on_sphere.x()) / kTwoPiF;
 }
 
 }  // namespace
@@ -299,7 +299,8 @@ void Renderer::shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, S
     const Eigen::Vector3f on_sphere = ellipsoid.center + ray / inverse_depth[column];
     const Eigen::Vector3f normal_world = (ellipsoid.normal_to_world * on_sphere).normalized();
     const auto light = static_cast<std::uint32_t>(256.0F * (0.68F + 0.32F * normal_world.dot(kLight)));
-    const float s = (on_sphere.x() + on_sphere.y() + 1.42F) / 2.84F * width;
+    const float s =
+        ellipsoid.texture->wraps ? around(on_sphere) * width : (on_sphere.x() + on_sphere.y() + 1.42F) / 2.84F * width;
     const float t = (1.0F - on_sphere.z()) / 2.0F * height;
     const std::uint32_t texel = sample(level, s, t);
     pixel[0] = static_cast<std::uint8_t>(((texel & 255U) * light) >> 8);

@@ -136,7 +136,7 @@ Scene::Scene(const SceneSpec& spec, std::uint64_t seed)
       lighting_(spec.flicker, seed) {
   if (spec.corridor) walk_.emplace(*spec.corridor, seed);
   SeededRandom random(seed);
-  for (int i = 0; i < spec.people; ++i) add<Walker>(random, spec.area);
+  for (int i = 0; i < spec.people; ++i) add<Walker>(random, spec.area, spec.figures);
   for (int i = 0; i < spec.boxes; ++i) add<CarriedBox>(random, spec.area);
   add_plot(spec, random);
 }
@@ -146,9 +146,9 @@ void Scene::add_plot(const SceneSpec& spec, SeededRandom& random) {
     case Plot::kNone:
       return;
     case Plot::kSitter:
-      return add<Sitter>(random, camera_path_, Sitter::Habits{spec.sit_s, spec.fidget_rad});
+      return add<Sitter>(random, camera_path_, Sitter::Habits{spec.sit_s, spec.fidget_rad}, spec.figures);
     case Plot::kBlocker:
-      return add<Blocker>(random, camera_path_);
+      return add<Blocker>(random, camera_path_, spec.figures);
     case Plot::kAxialBox:
       return add<AxialBox>(random, camera_path_);
     case Plot::kSlowBoxes:

@@ -29,6 +29,7 @@ struct SceneSpec {
   CameraMotion motion = CameraMotion::kHandHeld;
   WalkArea area = {};
   Plot plot = Plot::kNone;
+  FigureLook figures = FigureLook::kPlain;
   std::uint64_t frames = 300;                 ///< of a clip, by default
   double fps = 30;                            ///< the same
   double range_m = 6;                         ///< depth is measured up to this distance

@@ -128,6 +128,16 @@ const std::vector<NamedMotion>& camera_motions() {
   return motions;
 }
 
+struct NamedLook {
+  std::string name;
+  synthetic::FigureLook look;
+};
+const std::vector<NamedLook>& figure_looks() {
+  static const std::vector<NamedLook> looks = {{"plain", synthetic::FigureLook::kPlain},
+                                               {"drawn", synthetic::FigureLook::kDrawn}};
+  return looks;
+}
+
 struct NamedTiming {
   std::string name;
   bool known;
@@ -139,7 +149,7 @@ const std::vector<NamedTiming>& timings() {
 
 /// The parameters whose value is a word.
 const std::vector<std::string>& word_keys() {
-  static const std::vector<std::string> keys = {"sensor", "motion", "timing"};
+  static const std::vector<std::string> keys = {"sensor", "motion", "figures", "timing"};
   return keys;
 }
 
@@ -204,6 +214,7 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   if (uri.parameters.contains("sensor")) options.faults = choose(uri, "sensor", synthetic::sensor_presets()).faults;
   if (uri.parameters.contains("timing")) options.timing_known = choose(uri, "timing", timings()).known;
   if (uri.parameters.contains("motion")) options.scene.motion = choose(uri, "motion", camera_motions()).motion;
+  if (uri.parameters.contains("figures")) options.scene.figures = choose(uri, "figures", figure_looks()).look;
   const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
     if (std::ranges::find(word_keys(), key) != word_keys().end()) continue;

@@ -157,10 +157,27 @@ MipLevel half_size(const MipLevel& level) {
   return half;
 }
 
+void draw(Canvas& canvas, const Drawing& drawing) {
+  const auto centered = [](int i, int count) {
+    return (2 * static_cast<float>(i) + 1) / static_cast<float>(count) - 1;
+  };
+  for (int y = 0; y < canvas.height; ++y) {
+    for (int x = 0; x < canvas.width; ++x) {
+      ColorBgr& pixel = canvas.at(x, y);
+      pixel = drawing(pixel, centered(x, canvas.width), -centered(y, canvas.height));
+    }
+  }
+}
+
 }  // namespace
 
 Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style,
                       std::uint64_t seed) {
+  return paint_texture(width_m, height_m, texels_per_m, style, seed, nullptr);
+}
+
+Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style, std::uint64_t seed,
+                      const Drawing& drawing) {
   SeededRandom random(seed);
   Canvas canvas{std::max(2, static_cast<int>(width_m * texels_per_m)),
                 std::max(2, static_cast<int>(height_m * texels_per_m)),
@@ -172,7 +189,8 @@ Texture paint_texture(float width_m, float height_m, float texels_per_m, const T
   }
   const int patches = static_cast<int>(std::ceil(style.patches_per_m2 * width_m * height_m));
   for (int i = 0; i < patches; ++i) paint_patch(canvas, random_patch(canvas, style, random), style.base);
-  Texture texture{texels_per_m, {to_level(canvas)}};
+  if (drawing) draw(canvas, drawing);
+  Texture texture{texels_per_m, {to_level(canvas)}, static_cast<bool>(drawing)};
   while (std::min(texture.levels.back().width, texture.levels.back().height) >= 2 * kSmallestLevel) {
     texture.levels.push_back(half_size(texture.levels.back()));
   }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace rtd::camera::synthetic {
@@ -49,6 +50,7 @@ struct MipLevel {
 struct Texture {
   float texels_per_m = 0;  ///< of level 0
   std::vector<MipLevel> levels;
+  bool wraps = false;  ///< on an ellipsoid: goes round its z axis, the middle in front (x); else is seen from x + y
 };
 
 struct ColorBgr {
@@ -67,6 +69,13 @@ struct TextureStyle {
 /// Paints a texture of width_m x height_m: multi-octave value noise with plain, checkered, striped and framed
 /// rectangles over it, so that there are corners of all sizes everywhere. The same arguments give the same texels.
 Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style, std::uint64_t seed);
+
+/// What is drawn over a texture that goes round an ellipsoid: the colour at `around`, 0 in front, 0.5 on the left, +-1
+/// behind, and `height`, z of the unit sphere; `below` is what was painted there.
+using Drawing = std::function<ColorBgr(const ColorBgr& below, float around, float height)>;
+/// The same with a drawing over it; it wraps.
+Texture paint_texture(float width_m, float height_m, float texels_per_m, const TextureStyle& style, std::uint64_t seed,
+                      const Drawing& drawing);
 
 /// Paints one more texture; its index.
 int add_texture(std::vector<Texture>& textures, float width_m, float height_m, float texels_per_m,

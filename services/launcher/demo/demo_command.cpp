@@ -21,7 +21,7 @@ namespace rtd::launcher {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr char kSyntheticSource[] = "synthetic:office?frames=300";
+constexpr char kSyntheticSource[] = "synthetic:office?frames=300&figures=drawn";
 constexpr char kSequence[] = "walk_xyz";
 constexpr char kPublicUrl[] = "https://cvg.cit.tum.de/rgbd/dataset";
 

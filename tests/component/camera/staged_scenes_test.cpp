@@ -87,7 +87,7 @@ TEST(SittingScene, fidgets_with_arms_and_head_alone) {
 
 TEST(Figure, sits_with_its_feet_on_the_floor_and_its_hips_on_the_seat) {
   std::vector<synthetic::Texture> textures;
-  const synthetic::Figure figure(1, textures);
+  const synthetic::Figure figure(1, synthetic::FigureLook::kPlain, textures);
   const auto top_when = [&](float seated) {
     synthetic::Geometry geometry;
     synthetic::Posture posture;

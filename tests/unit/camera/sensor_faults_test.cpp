@@ -56,6 +56,8 @@ TEST(SyntheticOptions, refuse_words_that_a_parameter_does_not_know) {
   EXPECT_THAT(
       [] { parse("?motion=still"); },
       ThrowsMessage<SourceError>(HasSubstr("motion is 'still', allowed are handheld, watching, tour, rolling")));
+  EXPECT_THAT([] { parse("?figures=real"); },
+              ThrowsMessage<SourceError>(HasSubstr("figures is 'real', allowed are plain, drawn")));
   EXPECT_THAT([] { parse("?timings=known"); }, ThrowsMessage<SourceError>(HasSubstr("did you mean 'timing'?")));
 }
 
