@@ -22,6 +22,7 @@ class Consistency {
   double value() const { return value_; }
   /// Whether the last frame's pose is doubtful: value() is below doubtful_below, or its standard deviation (m, along
   /// the worst axis), the larger the less agrees, exceeds 2 cm. Eq. (18). Doubt ends a tenth beyond both limits.
+  /// To be asked once for each frame.
   bool doubts(double sigma_m);
   /// What the contradictions add to the covariance of a pose, (x y z rx ry rz), in a scene at `scene_m`. Eq. (17).
   geometry::Matrix6d covariance(double scene_m) const;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace rtd::slam {
@@ -76,10 +77,12 @@ TEST(Consistency, doubts_an_uncertain_pose_the_sooner_the_less_agrees) {
 
 TEST(Consistency, is_certain_again_only_when_clearly_below_the_limit) {
   Consistency consistency = after(60, Tracked(300, 128, 0.5));  // 0.70
-  EXPECT_FALSE(consistency.doubts(0.019));
-  EXPECT_TRUE(consistency.doubts(0.022));
-  EXPECT_TRUE(consistency.doubts(0.019));
-  EXPECT_FALSE(consistency.doubts(0.017));
+  const double limit_m = 0.02 * std::exp(7 * (consistency.value() - 0.7));
+  EXPECT_NEAR(limit_m, 0.02, 0.003);
+  EXPECT_FALSE(consistency.doubts(0.95 * limit_m));
+  EXPECT_TRUE(consistency.doubts(1.05 * limit_m));
+  EXPECT_TRUE(consistency.doubts(0.95 * limit_m));
+  EXPECT_FALSE(consistency.doubts(0.9 * limit_m));
 }
 
 TEST(Consistency, never_doubts_with_a_share_of_0) {
@@ -101,6 +104,7 @@ TEST(Consistency, says_nothing_about_a_handful_of_matches) {
 
 TEST(Consistency, trusts_again_only_when_clearly_better) {
   Consistency consistency = after(60, Tracked(300, 450, 0.5));  // 0.40
+  EXPECT_TRUE(consistency.doubts(kSigma_m));
   const Tracked little_better(300, 380, 0.5), good(300, 80, 0.5);
   for (int i = 0; i < 60; ++i) {
     consistency.add(little_better.frame, little_better.map, little_better.tracking, kPeriod_s);
