@@ -250,13 +250,14 @@ void SlamService::log(const SlamOutput& output, msg::TrackingState previous) {
   if (output.up) log_gravity(*output.up);
   const FrameResult& result = output.result;
   const bool tracked = msg::is_measured(result.state), was_tracked = msg::is_measured(previous);
+  const bool left_odometry = previous == msg::TrackingState::kOdometry && result.state != msg::TrackingState::kOdometry;
   if (tracked && counters_.tracked == 1 && !map_cameras_.empty()) {
     SPDLOG_INFO("event=relocalized frame={} inliers={} after_frames={}", result.seq, result.inliers, counters_.frames);
   } else if (tracked && counters_.tracked == 1) {
     SPDLOG_INFO("event=map_started frame={} landmarks={}", result.seq, result.landmarks);
   } else if (result.state == msg::TrackingState::kOdometry && previous != result.state) {
     SPDLOG_WARN("event=tracking_odometry frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);
-  } else if (tracked && (!was_tracked || (previous == msg::TrackingState::kOdometry && previous != result.state))) {
+  } else if (tracked && (!was_tracked || left_odometry)) {
     SPDLOG_INFO("event=tracking_recovered frame={} inliers={}", result.seq, result.inliers);
   } else if (result.state == msg::TrackingState::kDoubtful && previous == msg::TrackingState::kOk) {
     SPDLOG_WARN("event=pose_doubtful frame={} inliers={} cause=\"{}\"", result.seq, result.inliers, output.problem);

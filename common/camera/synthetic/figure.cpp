@@ -32,6 +32,11 @@ struct Bone {
 };
 constexpr float kJointOverlap = 0.6F;  ///< of the radius
 
+/// How far an arm is turned about its shoulder; side: -1 right, 1 left.
+float arm_rad_of(const Posture& posture, float side) {
+  return -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
+}
+
 }  // namespace
 
 /// Where the parts of one figure go.
@@ -124,8 +129,7 @@ void Figure::append_upper_body(Placing& placing, const Posture& posture) const {
   placing.add_above_hips({{0, 0, 0.90F}, {0.145F, 0.19F, 0.17F}, 0, 0, Material::kDark}, trousers_texture_,
                          body);  // hips
   for (const float side : {-1.0F, 1.0F}) {
-    const float arm_rad =
-        -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
+    const float arm_rad = arm_rad_of(posture, side);
     placing.add_above_hips({{0, side * 0.26F, 1.12F}, {0.05F, 0.05F, 0.31F}, arm_rad, 1.40F}, shirt_texture_, limbs);
   }
 }
@@ -171,8 +175,7 @@ void Figure::append_drawn_limbs(Placing& placing, const Posture& posture) const 
   const float thigh_rad = kSeatedThighRad * posture.seated, swing = posture.swing * (1 - posture.seated);
   for (const float side : {-1.0F, 1.0F}) {
     const bool body = placing.body_moves, limbs = placing.limbs_move;
-    const float arm_rad =
-        -side * posture.swing * kArmSwingRad + posture.seated * kSeatedArmRad + side * posture.fidget_rad;
+    const float arm_rad = arm_rad_of(posture, side);
     const float leg_rad = side * swing * kLegSwingRad - thigh_rad;
     const float shin_rad = (1 - posture.seated) * (leg_rad + kKneeRad * std::abs(swing));
     const Vector3f shoulder_m = Vector3f(0, side * 0.215F, 1.40F) + placing.hip_shift_m;

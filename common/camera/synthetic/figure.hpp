@@ -12,7 +12,6 @@
 namespace rtd::camera::synthetic {
 
 inline constexpr float kSeatHeightM = 0.45F;
-inline constexpr float kFigureTexelsPerM = 256;  ///< of all movers
 
 /// How a figure stands or sits at one moment.
 struct Posture {

@@ -11,7 +11,7 @@
 namespace rtd::camera::synthetic {
 namespace {
 
-constexpr float kTexelsPerM = 256, kFaceTexelsPerM = 400;
+constexpr float kFaceTexelsPerM = 400;
 constexpr float kSkinNoise = 3, kClothNoise = 6;  ///< grey levels of each octave
 constexpr ColorBgr kWhite{225, 228, 228}, kBlack{28, 26, 26}, kLips{82, 78, 150}, kLeather{45, 60, 85};
 
@@ -133,7 +133,7 @@ struct Painter {
     return add(skin, kSkinNoise, texels_per_m, size_m, drawing);
   }
   int add_cloth(const ColorBgr& cloth, const Eigen::Vector2f& size_m, const Drawing& drawing) {
-    return add(cloth, kClothNoise, kTexelsPerM, size_m, drawing);
+    return add(cloth, kClothNoise, kFigureTexelsPerM, size_m, drawing);
   }
 };
 
@@ -170,7 +170,7 @@ PersonTextures draw_person(std::uint64_t seed, float breadth, std::vector<Textur
       skin, kFaceTexelsPerM, {0.55F, 0.27F},
       [&](const ColorBgr& below, float around, float height) { return face(below, hair, around, height); });
   person.hair = painter.add_cloth(hair, {0.55F, 0.27F}, as_it_is);
-  person.skin = painter.add_skin(skin, kTexelsPerM, {0.25F, 0.3F}, as_it_is);
+  person.skin = painter.add_skin(skin, kFigureTexelsPerM, {0.25F, 0.3F}, as_it_is);
   person.chest =
       painter.add_cloth(clothes.cloth, {breadth, 0.5F}, [&](const ColorBgr& below, float around, float height) {
         return chest(clothes, woven(below, around, height), skin, around, height);

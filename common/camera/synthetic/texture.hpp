@@ -11,6 +11,7 @@ namespace rtd::camera::synthetic {
 
 inline constexpr double kPi = 3.141592653589793, kTwoPi = 6.283185307179586;
 inline constexpr float kPiF = 3.1415927F, kTwoPiF = 6.2831853F;
+inline constexpr float kFigureTexelsPerM = 256;  ///< of all movers
 
 /// A small generator with the same numbers on every platform and library (splitmix64, Steele et al. 2014).
 class SeededRandom {
