@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
+#include "common/vision/person_masks.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
 #include "services/filter/core/filter_config.hpp"
 
@@ -20,6 +21,7 @@ namespace rtd::filter {
 struct DetectionBatch {
   std::int64_t stamp_ns = 0;
   std::vector<vision::Detection> detections;
+  vision::PersonMasks masks = {};  ///< of `detections`; empty: boxes alone
 };
 
 /// What has arrived from the detector since the previous frame.
