@@ -57,7 +57,7 @@ apt() {
 
 if [ "$action" != install ]; then
   mapfile -t installed < <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' rtd-slam rtd-slam-viewer rtd-msgs-dev \
-    rtd-slam-doc 2>/dev/null | sed -n 's/^\(installed\|config-files\) //p')
+    python3-rtd-slam rtd-slam-doc 2>/dev/null | sed -n 's/^\(installed\|config-files\) //p')
   [ "${#installed[@]}" -gt 0 ] || fail "no package of RTD-SLAM is installed"
   apt "$action" "${installed[@]}"
   echo "install: $action of ${installed[*]}: done"

@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Builds the Debian packages rtd-slam, rtd-slam-viewer, rtd-msgs-dev and rtd-slam-doc into build/release/packages.
+# Builds the Debian packages rtd-slam, rtd-slam-viewer, rtd-msgs-dev, python3-rtd-slam and rtd-slam-doc into
+# build/release/packages.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# CPack's description of the four Debian packages.
+# CPack's description of the five Debian packages.
 set(RTD_PACKAGE_MAINTAINER "" CACHE STRING "Who builds the packages: Name <mail address>; default: DEBFULLNAME, DEBEMAIL")
 set(maintainer "${RTD_PACKAGE_MAINTAINER}")
 if(NOT maintainer AND DEFINED ENV{DEBFULLNAME} AND DEFINED ENV{DEBEMAIL})
@@ -19,7 +19,7 @@ set(CPACK_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL rtd_slam rtd_viewer rtd_msgs rtd_doc)
+set(CPACK_COMPONENTS_ALL rtd_slam rtd_viewer rtd_msgs rtd_python rtd_doc)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_MAINTAINER "${maintainer}")
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -53,6 +53,16 @@ set(CPACK_DEBIAN_RTD_MSGS_PACKAGE_SECTION devel)
 set(CPACK_COMPONENT_RTD_MSGS_DESCRIPTION "IDL of the topics of RTD-SLAM
 The types of all topics of RTD-SLAM, and a CMake package that makes libraries
 of them for Fast DDS and Cyclone DDS.")
+
+set(CPACK_DEBIAN_RTD_PYTHON_PACKAGE_NAME python3-rtd-slam)
+set(CPACK_DEBIAN_RTD_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_RTD_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_RTD_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+set(CPACK_DEBIAN_RTD_PYTHON_PACKAGE_SUGGESTS "rtd-slam, python3-pandas, python3-matplotlib")
+set(CPACK_COMPONENT_RTD_PYTHON_DESCRIPTION "results of RTD-SLAM as NumPy arrays
+Reads the folder of a run: poses, keyframes, events and the figures of each
+frame. With rtd-slam installed it also starts runs, and gives their poses as
+they come.")
 
 set(CPACK_DEBIAN_RTD_DOC_PACKAGE_NAME rtd-slam-doc)
 set(CPACK_DEBIAN_RTD_DOC_PACKAGE_ARCHITECTURE all)

@@ -47,6 +47,7 @@ holds rtd-slam usr/bin/rtd usr/bin/rtd-slam usr/bin/rtd-link usr/lib/systemd/sys
   usr/lib/udev/rules.d/60-rtd-cameras.rules etc/rtd-slam/rtd-slam.conf usr/share/doc/rtd-slam/copyright
 holds rtd-slam-viewer usr/bin/rtd-viewer
 holds rtd-msgs-dev usr/share/rtd_msgs/idl/rtd_msgs.idl usr/share/rtd_msgs/cmake/rtd_msgsConfig.cmake
+holds python3-rtd-slam usr/lib/python3/dist-packages/rtd_slam/__init__.py
 holds rtd-slam-doc usr/share/doc/rtd-slam-doc/docs/operations.md usr/share/doc/rtd-slam-doc/services/slam/README.md
 for package in "$work"/1/*.deb; do
   dpkg-deb -c "$package" | grep -E "usr/local|/s?bin/.*(bench|train)|test_" && fail "$package holds what it should not"
@@ -75,6 +76,7 @@ inside sh -c 'cd /tmp && rtd run --source "synthetic:office?frames=40" --out /tm
   >"$work/run.log" 2>&1 || fail "rtd run: $(cat "$work/run.log")"
 [ "$(inside grep -c '^[0-9]' /tmp/run/trajectory.txt)" -gt 30 ] || fail "poses of 40 frames: $(cat "$work/run.log")"
 inside systemd-analyze verify /usr/lib/systemd/system/rtd-slam@slam.service 2>&1 | grep rtd-slam && fail "unit of slam"
+inside python3 -c "import rtd_slam; assert len(rtd_slam.open('/tmp/run').poses) > 30" || fail "python3-rtd-slam"
 inside rtd-viewer --help >/dev/null || fail "rtd-viewer does not run"
 
 echo "RTD_COMMON_OPTIONS=--profile lan" >"$work/root/etc/rtd-slam/rtd-slam.conf"
@@ -86,10 +88,10 @@ inside sh -c 'dpkg -i --force-confold /packages/*.deb' >"$work/dpkg.log" 2>&1 ||
 [ "$(inside dpkg-query -W -f '${Version}' rtd-slam)" = "$version.1" ] || fail "not upgraded"
 grep -q lan "$work/root/etc/rtd-slam/rtd-slam.conf" || fail "the upgrade replaced settings"
 
-inside dpkg --remove rtd-slam-viewer rtd-slam rtd-msgs-dev rtd-slam-doc >"$work/dpkg.log" 2>&1 ||
+inside dpkg --remove rtd-slam-viewer rtd-slam rtd-msgs-dev python3-rtd-slam rtd-slam-doc >"$work/dpkg.log" 2>&1 ||
   fail "removal: $(cat "$work/dpkg.log")"
 [ -f "$work/root/var/lib/rtd-slam/room.rtdmap" ] || fail "removal took the map"
-inside dpkg --purge rtd-slam-viewer rtd-slam rtd-msgs-dev rtd-slam-doc >"$work/dpkg.log" 2>&1 ||
+inside dpkg --purge rtd-slam-viewer rtd-slam rtd-msgs-dev python3-rtd-slam rtd-slam-doc >"$work/dpkg.log" 2>&1 ||
   fail "purge: $(cat "$work/dpkg.log")"
 # What is deleted of a lower layer is a character device.
 left="$(holdings | while read -r path; do [ -c "$work/upper/$path" ] || echo "$path"; done)"
