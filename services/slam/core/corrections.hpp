@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
 #include "services/slam/core/slam_config.hpp"
 
@@ -35,6 +36,20 @@ class OdometryFrame {
  private:
   LoopConfig config_;
   Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
+};
+
+/// Frames beside an old map, which odometry alone has placed. What it was wrong by when the map is recognised again is
+/// spread evenly over them. docs/theory/tracking.md, "Odometry".
+class OdometryStretch {
+ public:
+  void add(std::uint64_t seq, const Eigen::Isometry3d& T_world_camera) { frames_.push_back({seq, T_world_camera}); }
+  /// Of the frames so far, given the next one: where odometry expects it, and where the map shows it.
+  std::vector<PoseCorrection> spread(const Eigen::Isometry3d& T_world_expected,
+                                     const Eigen::Isometry3d& T_world_found) const;
+  void clear() { frames_.clear(); }
+
+ private:
+  std::vector<std::pair<std::uint64_t, Eigen::Isometry3d>> frames_;  ///< seq, T_world_camera
 };
 
 /// Keyframe changes that wait to be published. A closed loop moves thousands of keyframes at once. Their corrections

@@ -3,34 +3,12 @@
 #include "services/slam/core/slam_system.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
 #include "common/msg/sensor_time.hpp"
 
 namespace rtd::slam {
-namespace {
-
-/// One line for people about a frame that is not tracked as it should be; empty where it is. `needed`: landmarks.
-std::string problem_of(const TrackOutcome& outcome, int needed) {
-  using State = msg::TrackingState;
-  const std::string state = msg::to_string(outcome.state), found = std::to_string(outcome.inliers);
-  if (outcome.at_place()) return state + ": a place was recognised, the next frames have to agree";
-  if (outcome.state == State::kOk) return "";
-  if (outcome.state == State::kDoubtful)
-    return state + ": " + std::to_string(std::lround(100 * outcome.consistency)) +
-           " % of the matched landmarks agree closely with the pose, which is known to " +
-           std::to_string(std::lround(1e3 * outcome.sigma_m)) + " mm; it may follow something that moves";
-  if (outcome.state == State::kOdometry)
-    return state + ": the map is not recognised; " + found +
-           " points of the last frame give the motion since then, and errors add up";
-  const std::string begin = (outcome.state == State::kRecentlyLost ? "lost" : state) + ": " + found;
-  if (outcome.inliers < needed) return begin + " of " + std::to_string(needed) + " landmarks that a pose needs";
-  return begin + " landmarks agree with a pose that is not believed, because too few of the expected ones were found";
-}
-
-}  // namespace
 
 SlamSystem::SlamSystem(const SlamConfig& config, MappingMode mode, Clock now_ns,
                        std::function<void()> on_mapping_thread)
@@ -71,6 +49,7 @@ void SlamSystem::reset() {
   map_ = 0;
   frames_.clear();
   unsettled_ = {};
+  leave_odometry();
   frames_tracked_ = 0;
   changes_ = {};
   event_count_ = 0;
@@ -199,6 +178,7 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) 
   const Eigen::Isometry3d before = first_map ? given_or_found : tracker_->T_world_camera();
   TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
   odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
+  leave_odometry();
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
@@ -219,6 +199,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   TrackOutcome outcome = tracker_->track(input.frame, snapshot);
   if (wants_new_map(*input.frame, outcome)) return begin_map(input, output);
   output.problem = problem_of(outcome, config_.tracker.min_inliers);
+  join(outcome);
   if (outcome.at_place()) {
     follow_reference(outcome);
     return outcome;
@@ -239,6 +220,26 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     outcome.map = corrected;
   }
   return outcome;
+}
+
+/// Odometry goes on beside an old map, or has just met it again, or is over.
+void SlamSystem::join(const TrackOutcome& outcome) {
+  using State = msg::TrackingState;
+  const bool found = outcome.at_place() || (msg::is_measured(outcome.state) && !outcome.apart);
+  if (found && outcome.T_world_expected && outcome.map->map == map_)
+    meeting_ = Meeting{*outcome.T_world_expected, outcome.tracked.T_world_camera};
+  if (outcome.apart) stretch_.add(outcome.tracked.frame->seq, outcome.tracked.T_world_camera);
+  if (outcome.apart || outcome.at_place() || outcome.state == State::kPredicted) return;
+  if (meeting_ && msg::is_measured(outcome.state)) {
+    correct_frames(stretch_.spread(meeting_->T_world_expected, meeting_->T_world_found), frames_);
+    odometry_.correct(meeting_->T_world_expected, meeting_->T_world_found);
+  }
+  leave_odometry();
+}
+
+void SlamSystem::leave_odometry() {
+  stretch_.clear();
+  meeting_.reset();
 }
 
 void SlamSystem::record(const TrackedFrame& tracked) {

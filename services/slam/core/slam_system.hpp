@@ -120,6 +120,8 @@ class SlamSystem {
   Eigen::Isometry3d align_to_gravity(const std::optional<FloorPlane>& floor, SlamOutput& output);
   bool wants_new_map(const Frame& frame, const TrackOutcome& outcome);
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
+  void join(const TrackOutcome& outcome);
+  void leave_odometry();
   void record(const TrackedFrame& tracked);
   double given_readout_s() const;
   ShutterMotion shutter_motion() const;
@@ -141,6 +143,12 @@ class SlamSystem {
   DepthWeightEstimator depth_weight_;
   ShutterMotion shutter_;  ///< what the features of the frame in work were corrected with
   OdometryFrame odometry_;
+  OdometryStretch stretch_;
+  /// Where the place that was recognised after it shows a frame, and where odometry expected that frame.
+  struct Meeting {
+    Eigen::Isometry3d T_world_expected, T_world_found;
+  };
+  std::optional<Meeting> meeting_;
   int frames_without_up_ = 0;
   bool begun_ = false;     ///< a map, ever
   bool had_pose_ = false;  ///< the last frame

@@ -57,6 +57,31 @@ TEST(KeyframeChangeQueue, a_keyframe_that_moves_again_is_published_once_with_its
   EXPECT_EQ(reported[0].T_world_camera.translation().x(), 0.7);
 }
 
+TEST(OdometryStretch, spreads_what_odometry_was_wrong_by_evenly_over_its_frames) {
+  OdometryStretch stretch;
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::uint64_t seq = 10; seq < 13; ++seq) {
+    poses.emplace_back(Eigen::Translation3d(0.1 * static_cast<double>(seq), 0, 0) *
+                       Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitY()));
+    stretch.add(seq, poses.back());
+  }
+  Eigen::Isometry3d T_world_expected = poses.back();
+  T_world_expected.translation().x() += 0.1;
+  Eigen::Isometry3d T_world_found = T_world_expected;
+  T_world_found.translation().z() += 0.08;
+  T_world_found.linear() = Eigen::AngleAxisd(0.04, Eigen::Vector3d::UnitX()) * T_world_expected.linear();
+  const auto corrections = stretch.spread(T_world_expected, T_world_found);
+  ASSERT_EQ(corrections.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double share = static_cast<double>(i + 1) / 4;
+    Eigen::Isometry3d T_world_smoothed = poses[i];
+    T_world_smoothed.translation().z() += share * 0.08;
+    T_world_smoothed.linear() = Eigen::AngleAxisd(share * 0.04, Eigen::Vector3d::UnitX()) * T_world_smoothed.linear();
+    EXPECT_EQ(corrections[i].seq, 10 + i);
+    EXPECT_TRUE((poses[i] * corrections[i].T_claimed_smoothed).isApprox(T_world_smoothed, 1e-9)) << i;
+  }
+}
+
 TEST(OdometryFrame, takes_up_a_jump_so_that_the_odometry_stays_where_it_was) {
   OdometryFrame frame{LoopConfig{}};
   const Eigen::Isometry3d before = geometry::se3_exp(geometry::Vector6d::Constant(0.3));

@@ -222,6 +222,69 @@ TEST(SlamSystem, continues_from_frame_to_frame_without_the_map) {
   EXPECT_EQ(slam.trajectory().size(), 3U) << "one trajectory";
 }
 
+/// A map of at least 20 keyframes, which odometry leaves as it is.
+SlamSystem make_slam_that_maps_densely(double new_map_after_s) {
+  SlamConfig config;
+  config.sensor.calibration_error = 0;
+  config.keyframe.min_gap_s = 0;
+  config.keyframe.reference_ratio = 1;
+  config.mapper.redundant_ratio = config.mapper.old_redundant_ratio = 1;
+  config.place.new_map_after_s = new_map_after_s;
+  return {config, MappingMode::kSynchronous, frozen_clock};
+}
+
+/// Returns the next frame.
+std::uint64_t map_until_old(SlamSystem& slam, const FeatureWorld& world) {
+  std::uint64_t seq = 0;
+  while (slam.keyframes().size() < 22 && seq < 300) slam.process(*world.view(seq++));
+  EXPECT_GE(slam.keyframes().size(), 22U);
+  return seq;
+}
+
+TEST(SlamSystem, odometry_goes_on_beside_an_old_map_and_joins_it_again) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  SlamSystem slam = make_slam_that_maps_densely(3);
+  constexpr std::uint64_t kLost = 15;
+  const std::uint64_t seen = map_until_old(slam, world);
+  const std::size_t keyframes = slam.keyframes().size();
+  double variance_m2 = 0;
+  std::uint64_t seq = seen;
+  for (; seq < seen + kLost; ++seq) {
+    const SlamOutput output = slam.process(*mostly_hidden(world, seq, 26));
+    ASSERT_EQ(output.result.state, TrackingState::kOdometry) << "frame " << seq << ": " << output.problem;
+    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.05) << "frame " << seq;
+    EXPECT_GT(output.result.covariance.trace(), variance_m2) << "frame " << seq;
+    variance_m2 = output.result.covariance.trace();
+  }
+  EXPECT_EQ(slam.keyframes().size(), keyframes) << "an old map does not grow by what is not recognised";
+  const SlamOutput back = slam.process(*world.view(seq));
+  EXPECT_EQ(back.result.state, TrackingState::kOk) << back.problem;
+  EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 0.01);
+  const std::vector<StampedPose> trajectory = slam.trajectory();
+  ASSERT_EQ(trajectory.size(), seq + 1) << "one trajectory";
+  for (std::uint64_t i = seen; i < seen + kLost; ++i)
+    EXPECT_LT(position_error_m(trajectory[i].T_world_body, i), 0.02) << "mended frame " << i;
+}
+
+TEST(SlamSystem, an_old_map_grows_at_the_pose_of_lasting_odometry) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  SlamSystem slam = make_slam_that_maps_densely(0.29);
+  const std::uint64_t seen = map_until_old(slam, world);
+  const std::size_t keyframes = slam.keyframes().size();
+  std::uint64_t seq = seen;
+  for (; seq < seen + 15 && slam.keyframes().size() == keyframes; ++seq) {
+    const SlamOutput output = slam.process(*mostly_hidden(world, seq, 26));
+    ASSERT_TRUE(msg::is_measured(output.result.state)) << "frame " << seq << ": " << output.problem;
+  }
+  EXPECT_EQ(seq, seen + 10) << "not before";
+  EXPECT_EQ(slam.maps().size(), 1U) << "a second map is the last resort";
+  slam.read_map([](const Map& map) {
+    EXPECT_EQ(map.check_invariants(), "");
+    EXPECT_TRUE(std::prev(map.keyframes().end())->second.covisible.empty()) << "nothing bends the old part";
+  });
+  EXPECT_EQ(slam.trajectory().size(), seq) << "one trajectory";
+}
+
 /// Half of the features lie on a thing that is carried along with the camera.
 std::unique_ptr<msg::FeatureFrame> beside_carried_thing(const FeatureWorld& world, std::uint64_t seq,
                                                         std::uint8_t flags) {

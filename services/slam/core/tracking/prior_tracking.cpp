@@ -10,15 +10,14 @@ namespace rtd::slam {
 
 void Tracker::expect(const Frame& frame) {
   constexpr double kForgotten = 0.003;  // of the usual number in each frame: ten seconds
-  expected_ = prior_->advance(frame.stamp_ns);
-  weighed_ = false;
   usual_features_ = std::max((1 - kForgotten) * usual_features_, static_cast<double>(frame.features.size()));
+  weighed_ = false;
+  if (prior_ != nullptr) expected_ = prior_->advance(frame.stamp_ns);
 }
 
 /// Whether something hides most of what there was to see a moment ago.
-bool Tracker::covered(const Frame& frame) const {
-  return follows_prior(frame) &&
-         static_cast<double>(frame.features.size()) < config_.prior.covered_share * usual_features_;
+bool Tracker::hidden(const Frame& frame) const {
+  return static_cast<double>(frame.features.size()) < config_.prior.covered_share * usual_features_;
 }
 
 /// Few landmarks, on one side of the view, leave a pose free in some directions: there the prior holds it.

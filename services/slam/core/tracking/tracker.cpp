@@ -78,6 +78,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   motion_.reset();
   keyframe_ns_ = last_.frame->stamp_ns;
   failing_since_ns_.reset();
+  apart_since_ns_.reset();
   relocalizer_.settle(map);
   consistency_.reset();
   if (prior_ != nullptr) {
@@ -92,7 +93,8 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   TrackOutcome outcome;
   outcome.map = relocalizer_.choose_map(snapshot, last_.reference);
   adopt(*outcome.map);
-  if (prior_ != nullptr) expect(*frame);
+  expect(*frame);
+  if (apart_since_ns_) outcome.T_world_expected = predict(*frame).T_world_camera;
   LocalMapTracking tracking;
   std::int64_t optimizer_ns = 0;
   for (const Attempt attempt : {Attempt::kLastFrame, Attempt::kKeyframe, Attempt::kAround, Attempt::kRecovery}) {
@@ -127,12 +129,14 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
 
 void Tracker::forget_motion() {
   motion_.reset();
+  apart_since_ns_.reset();
   if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
 }
 
 void Tracker::await_relocalization() {
   motion_.reset();
   last_ = TrackedFrame{};
+  apart_since_ns_.reset();
   state_ = msg::TrackingState::kLost;
   relocalizer_.await();
 }
@@ -217,6 +221,7 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 /// The frame was tracked. After a recognised place some more must agree before a pose counts.
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
   const double elapsed_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
+  apart_since_ns_.reset();
   consistency_.add(*frame, *outcome.map, tracking, elapsed_s);
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
@@ -326,8 +331,8 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
-  situation.covered = weighed_;
-  situation.odometry = state_ == msg::TrackingState::kOdometry;
+  situation.covered = weighed_ || waits_apart();
+  situation.odometry = state_ == msg::TrackingState::kOdometry && !waits_apart();
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
     situation.reference_landmarks = map.confirmed_landmarks(*reference);
   }
@@ -341,6 +346,11 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
 
 KeyframeProposal Tracker::propose_keyframe() {
   KeyframeProposal proposal{last_.frame, last_.reference, last_.T_reference_camera, last_.landmarks, {}};
+  if (apart_since_ns_) {  // what odometry gets wrong must not bend the old map: a loop joins the two
+    std::ranges::fill(proposal.landmarks, kNoLandmark);
+    apart_since_ns_.reset();
+    consistency_.reset();
+  }
   proposal.covariance = covariance_;
   for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
   statistics_.clear();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory_resource>
 #include <optional>
+#include <string>
 #include <unordered_map>
 
 #include "common/msg/tracking.hpp"
@@ -29,7 +30,7 @@ struct KeyframeSituation {
   int close_tracked = 0;        ///< close features that are landmarks
   int close_untracked = 0;      ///< close features that could become some
   bool mapper_idle = true;
-  bool odometry = false;  ///< the map is young and not recognised: it must grow here
+  bool odometry = false;  ///< the map is not recognised, and young or for long: it must grow here
   bool covered = false;   ///< something hides most of the view, and IMU or wheels help out
 };
 
@@ -45,11 +46,18 @@ struct TrackOutcome {
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
+  /// Odometry goes on beside the map, which is old and does not change. At the first frame after it: where odometry
+  /// expects that frame.
+  bool apart = false;
+  std::optional<Eigen::Isometry3d> T_world_expected;
   std::array<float, msg::kSlamStages> stage_ms{};
 
   /// A place was recognised and is not confirmed yet.
   bool at_place() const { return state == msg::TrackingState::kRelocalizing && tracked.frame != nullptr; }
 };
+
+/// One line for people about a frame that is not tracked as it should be; empty where it is. `needed`: landmarks.
+std::string problem_of(const TrackOutcome& outcome, int needed);
 
 /// Follows the camera through the map: motion model, else reference keyframe; then local map; when that fails, the
 /// places that look alike. Owns no map, sees it in snapshots only. docs/theory/tracking.md, place_recognition.md. Not
@@ -103,7 +111,8 @@ class Tracker {
   void expect(const Frame& frame);
   double expected_radius_px(const Frame& frame) const;
   bool follows_prior(const Frame& frame) const;
-  bool covered(const Frame& frame) const;
+  bool hidden(const Frame& frame) const;
+  bool covered(const Frame& frame) const { return follows_prior(frame) && hidden(frame); }
   void weigh_against_prior(PoseGuess& guess);
   bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
   void report_to_prior(const geometry::Matrix6d& covariance, bool had_pose);
@@ -118,6 +127,7 @@ class Tracker {
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
   bool continue_without_map(TrackOutcome& outcome, const FramePtr& frame);
+  bool waits_apart() const;
   void reject(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   bool claim_prior(TrackOutcome& outcome, const FramePtr& frame, const PoseGuess& weak);
   std::optional<PredictedPose> hold(const Frame& frame) const;
@@ -140,6 +150,7 @@ class Tracker {
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
   std::int64_t keyframe_ns_ = 0;                  ///< stamp of the last frame that was proposed
+  std::optional<std::int64_t> apart_since_ns_;    ///< stamp of the first frame of TrackOutcome::apart, while it is
   std::optional<std::int64_t> failing_since_ns_;  ///< stamp of the first frame without a pose, while there is none
   std::size_t next_recovery_ = 0;
   std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
