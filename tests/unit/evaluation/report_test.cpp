@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/report/report.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
+#include "services/evaluation/core/report/map_picture.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
@@ -185,6 +188,42 @@ TEST_F(Report, page_shows_every_section) {
         "frames 40 to 44 without pose", "filter restarted", "synthetic:office"}) {
     EXPECT_THAT(html, HasSubstr(text)) << text;
   }
+}
+
+TEST_F(Report, page_says_when_and_why_the_pose_was_doubtful) {
+  EXPECT_THAT(page(), Not(HasSubstr("Why the pose was doubtful")));
+  for (std::size_t i = 10; i < 13; ++i) record_.frames[i].tracking.state = msg::TrackingState::kDoubtful;
+  for (int i = 0; i < 5; ++i) record_.events.push_back(fmt::format("slam: doubtful: {} % agree", 40 - i));
+  const std::string html = page();
+  const auto section = html.substr(html.find("Why the pose was doubtful"), 900);
+  EXPECT_THAT(section, HasSubstr("<td>10 to 12</td>"));
+  EXPECT_THAT(section, AllOf(HasSubstr("40 % agree"), HasSubstr("(3 more"), HasSubstr("36 % agree")));
+  EXPECT_THAT(section, Not(HasSubstr("39 % agree")));
+}
+
+TEST_F(Report, page_shows_the_map_that_lies_beside_it) {
+  EXPECT_THAT(page(), Not(HasSubstr("Map from above")));
+  std::istringstream map(
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nend_header\n1 2 3 .9\n4 5 6 .9\nx\n");
+  record_.landmarks_m = read_landmarks(map, 100);
+  EXPECT_EQ(record_.landmarks_m.size(), 2U);
+  EXPECT_THAT(page(), HasSubstr("Map from above"));
+}
+
+TEST(Landmarks, are_thinned_and_those_of_other_files_left_out) {
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 1000\nend_header\n";
+  for (int i = 0; i < 1000; ++i) text += "1 2 3\n";
+  std::istringstream many(text), binary("ply\nformat binary_little_endian 1.0\nelement vertex 1\nend_header\n123"),
+      none("");
+  EXPECT_LE(read_landmarks(many, 100).size(), 100U);
+  EXPECT_TRUE(read_landmarks(binary, 100).empty());
+  EXPECT_TRUE(read_landmarks(none, 100).empty());
+}
+
+TEST(MapPicture, is_seen_along_the_axis_of_least_spread) {
+  const std::vector<Eigen::Vector3d> floor{{0, 0, 0}, {1, 0.1, 4}, {2, 0, 8}}, robot{{0, 0, 0}, {1, 4, 0.1}, {2, 8, 0}};
+  EXPECT_THAT(map_picture(floor, {}), HasSubstr("z [m]"));
+  EXPECT_THAT(map_picture(robot, {}), HasSubstr("y [m]"));
 }
 
 TEST_F(Report, sample_draws_kept_and_removed_points_where_the_camera_saw_them) {

@@ -7,7 +7,7 @@
 
 namespace rtd::eval::html {
 
-/// A whole page: head with inline styles, heading, body. Self-contained, no script.
+/// A whole page: head with inline styles for light and dark, heading, body. Self-contained, no script.
 std::string page(const std::string& title, const std::string& subtitle, const std::string& body);
 
 /// A titled block; `note` is a line of explanation under the title. Title and note are escaped, content is markup.
@@ -45,5 +45,7 @@ struct Figure {
   std::string markup, caption;
 };
 std::string gallery(const std::vector<Figure>& figures);
+/// The same, one at a time, in a strip whose scroll bar goes through them.
+std::string slider(const std::vector<Figure>& figures);
 
 }  // namespace rtd::eval::html

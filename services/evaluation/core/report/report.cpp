@@ -13,11 +13,13 @@
 #include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
+#include "services/evaluation/core/report/map_picture.hpp"
 
 namespace rtd::eval {
 namespace {
 
 constexpr std::size_t kJudgedWhenInterrupted = 50;
+constexpr std::size_t kDrawnLandmarks = 8000;
 
 std::string existing(const std::string& path) {
   return std::filesystem::is_regular_file(path) ? path : std::string();
@@ -152,6 +154,8 @@ Run load_run(const std::string& folder) {
   run.trajectory_path = existing(folder + "/trajectory.txt");
   run.static_map_path = existing(folder + "/static_map.ply");
   if (std::ifstream map(run.static_map_path); map) run.static_map_points = geometry::ply_vertices(map).value_or(0);
+  std::ifstream landmarks(folder + "/map.ply");
+  run.landmarks_m = read_landmarks(landmarks, kDrawnLandmarks);
   return run;
 }
 

@@ -4,10 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "services/evaluation/core/integrity/integrity_text.hpp"
+#include "services/evaluation/core/report/map_picture.hpp"
 #include "services/evaluation/core/report/report_parts.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
@@ -130,6 +132,21 @@ std::string error_section(const RunSummary& summary, const RunTime& time) {
                        svg.str());
 }
 
+std::vector<std::string> doubtful_row(std::vector<run_record::FrameRecord>::const_iterator begin,
+                                      std::vector<run_record::FrameRecord>::const_iterator end, const RunTime& time) {
+  const auto seconds = [&](const run_record::FrameRecord& frame) {
+    return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;
+  };
+  const auto range = [&](auto member) {
+    const auto [least, most] = std::minmax_element(
+        begin, end, [&](const auto& a, const auto& b) { return a.tracking.*member < b.tracking.*member; });
+    return fmt::format("{} to {}", (*least).tracking.*member, (*most).tracking.*member);
+  };
+  return {fmt::format("{:.2f} s", seconds(*begin)), fmt::format("{:.2f} s", seconds(*(end - 1)) - seconds(*begin)),
+          fmt::format("{} to {}", begin->tracking.seq, (end - 1)->tracking.seq), range(&msg::TrackingResult::inliers),
+          range(&msg::TrackingResult::features_removed)};
+}
+
 std::string integrity_section(const RunSummary& summary) {
   html::Table table{{"figure", "value"}, {}};
   const auto add = [&table](const std::vector<NamedFigure>& figures) {
@@ -140,6 +157,40 @@ std::string integrity_section(const RunSummary& summary) {
   if (table.rows.empty()) return "";
   return html::section("Integrity", "How far the state of a pose could be trusted when it was published.",
                        html::table(table));
+}
+
+/// When the state was doubtful, for how long, and what slam said then.
+std::string doubt_section(const Run& run, const RunTime& time) {
+  constexpr std::size_t kShown = 20;
+  html::Table table{{"from", "for", "frames", "landmarks that agreed", "removed features"}, {}};
+  std::size_t spans = 0;
+  const auto is_doubtful = [](const run_record::FrameRecord& frame) {
+    return frame.tracking.state == msg::TrackingState::kDoubtful;
+  };
+  for (auto begin = std::ranges::find_if(run.frames, is_doubtful); begin != run.frames.end();) {
+    const auto end = std::find_if_not(begin, run.frames.end(), is_doubtful);
+    if (++spans <= kShown) table.rows.push_back(doubtful_row(begin, end, time));
+    begin = std::find_if(end, run.frames.end(), is_doubtful);
+  }
+  if (spans == 0) return "";
+  std::vector<std::string> causes;
+  std::ranges::copy_if(run.events, std::back_inserter(causes),
+                       [](const std::string& event) { return event.find("doubtful") != std::string::npos; });
+  if (causes.size() > 2) {
+    causes = {causes.front(), fmt::format("... ({} more in the list of events)", causes.size() - 2), causes.back()};
+  }
+  const std::string more = spans > kShown ? fmt::format("<p class=\"note\">and {} more</p>", spans - kShown) : "";
+  return html::section("Why the pose was doubtful",
+                       "Too few of the matched landmarks agreed with the pose for how well it was known: something "
+                       "that moves may have taken it along (docs/integrity.md).",
+                       html::table(table) + more + (causes.empty() ? "" : html::list(causes)));
+}
+
+std::string map_section(const Run& run, const RunSummary& summary) {
+  const std::string picture = map_picture(run.landmarks_m, summary.estimate);
+  if (picture.empty()) return "";
+  return html::section("Map from above", "Landmarks of the map at the end of the run, and the final trajectory.",
+                       picture);
 }
 
 std::string removal_note(const Run& run) {
@@ -174,9 +225,10 @@ std::string stage_section(const RunSummary& summary) {
 }
 
 std::string samples_section(const Run& run) {
-  const std::vector<html::Figure> figures = sample_figures(run, kShownSamples);
+  const std::vector<html::Figure> figures = sample_figures(run, kSliderSamples);
   if (figures.empty()) return "";
-  return html::section("Sample frames", "Green: kept as static. Red: removed as dynamic.", html::gallery(figures));
+  return html::section("Sample frames", "Green: kept as static. Red: removed as dynamic. Scroll to see the others.",
+                       html::slider(figures));
 }
 
 std::string processes_section(const Run& run) {
@@ -242,10 +294,10 @@ std::string report_html(const Run& run, const RunSummary& summary) {
   const std::string events = events_section(run, summary);
   return html::page("RTD-SLAM run report", run.source,
                     header_badges(run, summary) + summary_cards(run, summary) + (poor ? events : "") +
-                        trajectory_section(summary, time) + error_section(summary, time) + integrity_section(summary) +
-                        samples_section(run) + features_section(run, summary) + latency_section(run, summary) +
-                        stage_section(summary) + processes_section(run) + losses_section(run, summary) +
-                        (poor ? "" : events));
+                        trajectory_section(summary, time) + error_section(summary, time) + map_section(run, summary) +
+                        integrity_section(summary) + doubt_section(run, time) + samples_section(run) +
+                        features_section(run, summary) + latency_section(run, summary) + stage_section(summary) +
+                        processes_section(run) + losses_section(run, summary) + (poor ? "" : events));
 }
 
 }  // namespace rtd::eval

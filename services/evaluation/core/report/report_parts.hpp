@@ -9,7 +9,8 @@
 
 namespace rtd::eval {
 
-inline constexpr std::size_t kShownSamples = 6;  ///< frames of a run that its page shows
+inline constexpr std::size_t kShownSamples = 6;    ///< frames of a run that a comparison shows
+inline constexpr std::size_t kSliderSamples = 24;  ///< and that the page of the run shows
 
 /// The time axis that all charts of a run share.
 struct RunTime {

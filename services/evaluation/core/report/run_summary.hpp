@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -22,7 +23,8 @@ struct Run : run_record::RunRecord {
   std::string groundtruth_path;  ///< TUM format; empty = none
   std::string static_map_path;   ///< static_map.ply that dense wrote; empty = none
   std::uint64_t static_map_points = 0;
-  std::optional<RunRemoval> removal;  ///< of sources that know what moves
+  std::vector<Eigen::Vector3d> landmarks_m;  ///< of map.ply, thinned; empty = none
+  std::optional<RunRemoval> removal;         ///< of sources that know what moves
 };
 
 /// Times in ms; NaN when nothing was measured.
