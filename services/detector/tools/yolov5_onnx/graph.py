@@ -3,7 +3,7 @@
 """An ONNX graph under construction that knows the shape of every tensor."""
 
 import numpy as np
-from onnx import TensorProto, checker, helper, numpy_helper
+from onnx import TensorProto, checker, helper, numpy_helper, shape_inference
 
 from .errors import ConversionError
 
@@ -63,7 +63,10 @@ class Graph:
         model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], producer_name="rtd-slam")
         model.ir_version = IR_VERSION
         helper.set_model_props(model, metadata)
-        checker.check_model(model, full_check=True)
+        try:
+            checker.check_model(model, full_check=True)
+        except (checker.ValidationError, shape_inference.InferenceError) as error:
+            raise ConversionError(f"the layers do not fit together: {error}") from error
         return model
 
     def _image_tensor(self, tensor, name):

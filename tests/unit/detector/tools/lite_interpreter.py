@@ -32,7 +32,7 @@ def compute_relu(operator, x):
 
 
 def compute_logistic(operator, x):
-    return 1 / (1 + np.exp(-x))
+    return np.exp(-np.logaddexp(0, -x))
 
 
 def compute_hard_swish(operator, x):

@@ -16,7 +16,6 @@ sys.path.insert(0, str(TOOLS))
 
 import cv2  # noqa: E402
 import numpy as np  # noqa: E402
-import onnx  # noqa: E402
 from tfjs_onnx.nanodet import convert  # noqa: E402
 from tfjs_onnx.reader import load_graph_model  # noqa: E402
 from yolov5_onnx.errors import ConversionError  # noqa: E402
@@ -170,7 +169,7 @@ class NanodetConverter(unittest.TestCase):
                 damaged[generator.randrange(len(damaged))] = generator.choice(b'0123456789"[]{},:-.eaNtf')
             try:
                 self.convert(text=bytes(damaged))
-            except (ConversionError, onnx.checker.ValidationError, onnx.shape_inference.InferenceError):
+            except ConversionError:
                 pass
 
     def test_names_a_missing_file_and_leaves_nothing_behind(self):
