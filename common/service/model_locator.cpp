@@ -19,6 +19,16 @@ std::string advice(const std::string& configured) {
   return "run `deploy/setup.sh --models" + option + "`, or point RTD_MODEL_DIR at a folder that has them";
 }
 
+/// What is missing.
+std::string missing(const std::string& configured) {
+  return find_known_model(configured) == &kMaskModel ? "no network for masks" : "no detector weights";
+}
+
+/// The configuration key that names another one.
+std::string key_of(const std::string& configured) {
+  return find_known_model(configured) == &kMaskModel ? "detector.mask_model" : "detector.model";
+}
+
 /// The file names that are looked for.
 std::vector<std::string> names_of(const std::string& configured) {
   if (const KnownModel* const known = find_known_model(configured)) return {known->file};
@@ -65,7 +75,7 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
   if (configured.find('/') != std::string::npos) {
     if (is_file(configured)) return {configured, {}};
     return {{},
-            "no detector weights: detector.model is '" + configured + "', which is no file; correct it, or " +
+            missing(configured) + ": " + key_of(configured) + " is '" + configured + "', which is no file; correct it, or " +
                 advice(configured)};
   }
   const std::vector<std::string> names = names_of(configured);
@@ -76,7 +86,7 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
     looked.push_back(folder.string());
   }
   return {{},
-          "no detector weights: looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
+          missing(configured) + ": looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
               advice(configured)};
 }
 

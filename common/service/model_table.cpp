@@ -15,8 +15,9 @@ std::string known_model_names() {
 
 const KnownModel* find_known_model(const std::string& name_or_path) {
   const std::string file = std::filesystem::path(name_or_path).filename().string();
-  const auto found = std::ranges::find_if(
-      kKnownModels, [&](const KnownModel& model) { return name_or_path == model.name || file == model.file; });
+  const auto is_meant = [&](const KnownModel& model) { return name_or_path == model.name || file == model.file; };
+  if (is_meant(kMaskModel)) return &kMaskModel;
+  const auto found = std::ranges::find_if(kKnownModels, is_meant);
   return found == kKnownModels.end() ? nullptr : found;
 }
 

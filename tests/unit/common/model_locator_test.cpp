@@ -129,6 +129,7 @@ TEST_F(ModelLocator, finds_a_known_network_by_its_name) {
 TEST(ModelTable, names_weights_and_licence) {
   EXPECT_EQ(describe_model("/any/where/yolox_nano.onnx"), "YOLOX-nano, Apache-2.0");
   EXPECT_EQ(describe_model("v5lite-s-raw-480x640.onnx"), "YOLOv5-Lite s, GPL-3.0");
+  EXPECT_EQ(describe_model("a/selfie_segmentation.onnx"), "MediaPipe Selfie Segmentation, Apache-2.0");
   EXPECT_EQ(describe_model("mine/own.onnx"), "own.onnx, licence not known");
 }
 

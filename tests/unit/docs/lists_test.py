@@ -79,6 +79,11 @@ def models():
     return [Model(*values) for values in row.findall(text_of(MODELS))]
 
 
+def mask_model():
+    return Model(*re.search(r'kMaskModel = \{"([^"]+)", "([^"]+)", "([^"]+)",\s+"([^"]+)", (true)\}',
+                            text_of(MODELS)).groups())
+
+
 def usual_files():
     return [model.file for model in models() if model.usual]
 
@@ -163,15 +168,18 @@ class Lists(unittest.TestCase):
         self.assertEqual(dict(re.findall(r"^ +([\w-]+)\) echo (\S+\.onnx) ;;", setup, re.MULTILINE)),
                          {model.name: model.file for model in models()})
         self.assertIn(f"'') echo {' '.join(usual_files())} ;;", setup)
-        self.assertEqual(re.findall(r'"\$weights/([\w.-]+\.onnx)"', install), usual_files())
+        mask = mask_model()
+        self.assertEqual(re.findall(r'"\$weights/([\w.-]+\.onnx)"', install), [*usual_files(), mask.file])
+        self.assertIn(f"find_weights {mask.file}\n", setup)
+        self.assertIn(f"fetch_model.sh\" {mask.name};", setup)
         *others, last = [model.name for model in models()]
         for text in (setup, fetch):
             self.assertIn(f"use {', '.join(others)} or {last}\"", text)
         self.assertIn(f'already "${{name:-{models()[0].name}}}"', fetch)
         choices = re.findall(r"^    ([\w-]+)\)\n", fetch, re.MULTILINE)
-        self.assertEqual(choices, [model.name for model in models()])
+        self.assertEqual(choices, [model.name for model in [*models(), mask]])
         page = text_of("services/detector/README.md")
-        for model in models():
+        for model in [*models(), mask]:
             choice = re.search(rf"^    {model.name}\)\n(.*?);;", fetch, re.MULTILINE | re.DOTALL).group(1)
             self.assertIn(f"model={model.file}\n", choice)
             self.assertRegex(choice, rf'title="{model.title} by \w+, {model.licence}[",]')
