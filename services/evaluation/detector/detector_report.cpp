@@ -158,6 +158,32 @@ std::string recall_rows(const std::string& name, const RecallByRoll& by_roll) {
   return text;
 }
 
+json overlap_json(const std::map<double, MaskOverlap>& by_roll) {
+  json rows = json::array();
+  for (const auto& [roll_deg, overlap] : by_roll) {
+    rows.push_back({{"roll_deg", roll_deg},
+                    {"iou", overlap.iou()},
+                    {"precision", overlap.precision()},
+                    {"recall", overlap.recall()},
+                    {"box_precision", overlap.box_precision()}});
+  }
+  return rows;
+}
+
+std::string overlap_rows(const std::vector<MaskResult>& models) {
+  std::string rows;
+  for (const MaskResult& result : models) {
+    for (const auto& [roll_deg, overlap] : result.overlap) {
+      rows += fmt::format("{:<36} {:>6.0f} {:>10.3f} {:>12.3f} {:>14.3f} {:>15.3f}\n", result.model.title(), roll_deg,
+                          overlap.iou(), overlap.precision(), overlap.recall(), overlap.box_precision());
+    }
+  }
+  if (rows.empty()) return rows;
+  return fmt::format("\n{:<36} {:>6} {:>10} {:>12} {:>14} {:>15}\n", "pixels in boxes", "roll", "mask IoU", "precision",
+                     "recall", "boxes' precision") +
+         rows;
+}
+
 std::string lines_of(const InputReport& input, const std::string& partner) {
   std::string text = fmt::format("{} images", input.images);
   if (input.without_partner > 0) text += fmt::format(", {} {}", input.without_partner, partner);
@@ -232,6 +258,7 @@ json to_json(const MaskResults& results) {
     json entry = model_json(result.model);
     entry["as_seen"] = recall_json(result.as_seen);
     entry["upright"] = recall_json(result.upright);
+    if (!result.overlap.empty()) entry["masks"] = overlap_json(result.overlap);
     document["models"].push_back(entry);
   }
   return document;
@@ -250,7 +277,8 @@ std::string to_table(const MaskResults& results) {
   }
   return text +
          "images complete: every marked area (400 px or more) has half of its pixels in boxes; beside: boxes on "
-         "nothing marked\n";
+         "nothing marked\n" +
+         overlap_rows(results.models);
 }
 
 std::string input_lines(const LabelledResults& results) {

@@ -63,6 +63,8 @@ void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
   command.add_option("--masks", options.masks, "Folder of masks named like the images, white = object: recall");
   command.add_flag("--dark-masks", options.dark_masks, "Masks: objects are black");
   command.add_option("--class", options.class_name, "Masks: the class that they show")->capture_default_str();
+  command.add_option("--mask-model", options.mask_model,
+                     "Masks: how well this network's agree inside the boxes (person-mask, or an ONNX file)");
   command.add_option("--confidence", options.thresholds, "Masks: confidence thresholds")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
@@ -104,6 +106,8 @@ int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std
     if (options.labels.empty() && options.masks.empty()) {
       throw service::ConfigError("add --labels DIR (average precision) or --masks DIR (recall)");
     }
+    if (!options.mask_model.empty() && (options.masks.empty() || options.class_name != "person"))
+      throw service::ConfigError("--mask-model needs --masks DIR that show people (--class person)");
     check_outputs(options);
     if (options.labels.empty()) {
       write_results(options, evaluate_masks(options, err), "recall_over_roll.svg", out, err);

@@ -32,6 +32,7 @@ struct EvalDetectorOptions {
   double wanted_recall = 0.6;                  ///< of objects of the high motion level
   int step = 1;                                ///< every n-th image
   std::string class_name = "person";           ///< what the masks show
+  std::string mask_model;                      ///< the network for masks, a file or a name; empty: boxes alone
   bool dark_masks = false;                     ///< objects are black in the masks
   std::vector<double> thresholds = {detector::DecodeConfig{}.confidence_threshold};  ///< for the masks
   RollRange roll;

@@ -194,15 +194,27 @@ std::vector<double> angles_of(const RollRange& range) {
   return angles;
 }
 
+/// The boxes of the class that the masks show.
+std::vector<vision::Detection> wanted_boxes(const std::vector<vision::Detection>& found,
+                                            const EvalDetectorOptions& options, double threshold) {
+  std::vector<vision::Detection> boxes;
+  std::ranges::copy_if(found, std::back_inserter(boxes), [&](const vision::Detection& box) {
+    return box.class_name == options.class_name && box.score >= threshold;
+  });
+  return boxes;
+}
+
 void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& found,
                 const EvalDetectorOptions& options, std::map<double, MaskRecall>& by_threshold) {
-  for (const double threshold : options.thresholds) {
-    std::vector<vision::Detection> boxes;
-    std::ranges::copy_if(found, std::back_inserter(boxes), [&](const vision::Detection& box) {
-      return box.class_name == options.class_name && box.score >= threshold;
-    });
-    by_threshold[threshold] += measure_mask_recall(image.mask, boxes);
-  }
+  for (const double threshold : options.thresholds)
+    by_threshold[threshold] += measure_mask_recall(image.mask, wanted_boxes(found, options, threshold));
+}
+
+void add_overlap(const MaskedImage& image, const std::vector<vision::Detection>& found,
+                 const EvalDetectorOptions& options, detector::PersonSegmenter& segmenter, MaskOverlap& overlap) {
+  const auto boxes = wanted_boxes(found, options, *std::ranges::min_element(options.thresholds));
+  const int all = segmenter.config().masks_per_frame;
+  overlap += measure_mask_overlap(image.mask, boxes, segmenter.segment(image.image, boxes, all));
 }
 
 std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOptions& options, InputReport& input) {
@@ -266,6 +278,7 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
   const std::vector<fs::path> images = images_in(options.images, options.step);
   require_folder(options.masks, "--masks");
   std::vector<ModelUnderTest> models = load_models(options, *std::ranges::min_element(options.thresholds));
+  const std::unique_ptr<detector::PersonSegmenter> segmenter = load_segmenter(options);
   const std::vector<double> angles_deg = angles_of(options.roll);
   MaskResults results;
   results.models.resize(models.size());
@@ -279,7 +292,9 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
       const MaskedImage seen = rolled(*pair, roll_deg);
       const double roll_rad = roll_deg * std::numbers::pi / 180;
       for (std::size_t m = 0; m < models.size(); ++m) {
-        add_recall(seen, models[m].detect(seen.image), options, results.models[m].as_seen[roll_deg]);
+        const std::vector<vision::Detection> found = models[m].detect(seen.image);
+        add_recall(seen, found, options, results.models[m].as_seen[roll_deg]);
+        if (segmenter) add_overlap(seen, found, options, *segmenter, results.models[m].overlap[roll_deg]);
         if (!options.derotate) continue;
         add_recall(seen, models[m].detect(seen.image, roll_rad), options, results.models[m].upright[roll_deg]);
       }

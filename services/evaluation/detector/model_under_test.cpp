@@ -37,9 +37,10 @@ detector::DetectorConfig keep_from(detector::DetectorConfig config, double least
   return config;
 }
 
-ModelUnderTest load_model(const detector::DetectorConfig& config, double least_score) {
+/// What `load` loads.
+auto load_or_explain(const auto& load) {
   try {
-    return ModelUnderTest(config, least_score);
+    return load();
   } catch (const detector::ModelError& error) {
     throw service::ConfigError(error.what());
   } catch (const detector::EngineError& error) {
@@ -97,10 +98,20 @@ std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, doub
     config.model_path = locate(name);
     for (const std::string& engine : options.engines) {
       config.engine = engine;
-      models.push_back(load_model(config, least_score));
+      models.push_back(load_or_explain([&] { return ModelUnderTest(config, least_score); }));
     }
   }
   return models;
+}
+
+std::unique_ptr<detector::PersonSegmenter> load_segmenter(const EvalDetectorOptions& options) {
+  if (options.mask_model.empty()) return nullptr;
+  detector::MaskConfig config;
+  config.model_path = locate(options.mask_model);
+  config.engine = options.engines.front();
+  config.kernel_cache = service::kernel_cache_folder(service::process_environment());
+  config.onnxruntime = service::find_onnxruntime();
+  return load_or_explain([&] { return std::make_unique<detector::PersonSegmenter>(config); });
 }
 
 }  // namespace rtd::eval

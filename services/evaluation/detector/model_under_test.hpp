@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "services/detector/core/detector.hpp"
+#include "services/detector/core/person_segmenter.hpp"
 #include "services/evaluation/detector/eval_detector_command.hpp"
 
 namespace rtd::eval {
@@ -51,5 +53,8 @@ class ModelUnderTest {
 /// All models of the options, or the default one, on each engine. Throws service::ConfigError when a model is missing
 /// or broken, or an engine or its device is not there.
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score);
+
+/// The network for masks on the first engine of the options; null when they name none. Throws as load_models() does.
+std::unique_ptr<detector::PersonSegmenter> load_segmenter(const EvalDetectorOptions& options);
 
 }  // namespace rtd::eval

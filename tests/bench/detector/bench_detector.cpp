@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Times of the detector on one thread: whole, and by part. Needs the weights; RTD_DATA_DIR gives a real image.
+// Times of the detector on one thread: whole, by part, and with masks of two people. Needs the weights; RTD_DATA_DIR
+// gives a real image.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -13,6 +14,8 @@
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/network.hpp"
 #include "services/detector/core/network_input.hpp"
+#include "services/detector/core/person_segmenter.hpp"
+#include "tests/support/detector/mask_network.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -47,6 +50,38 @@ void detect(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(detector.detect(image));
 }
 BENCHMARK(detect)->Unit(benchmark::kMillisecond)->MinTime(2);
+
+/// Each network for boxes with ONNX Runtime.
+void detect_with_onnxruntime(benchmark::State& state, const char* model) {
+  const service::ModelSearch found = service::find_model(model, service::process_environment());
+  if (!found || !knows_onnxruntime()) return state.SkipWithError("needs weights and ONNX Runtime");
+  DetectorConfig config;
+  config.model_path = found.path;
+  config.engine = "onnxruntime:" ONNXRUNTIME_LIBRARY;
+  Detector detector(config);
+  const cv::Mat image = test_image();
+  for (auto _ : state) benchmark::DoNotOptimize(detector.detect(image));
+}
+BENCHMARK_CAPTURE(detect_with_onnxruntime, yolov5_lite, "yolov5-lite")->Unit(benchmark::kMillisecond)->MinTime(2);
+BENCHMARK_CAPTURE(detect_with_onnxruntime, yolox_nano, "yolox-nano")->Unit(benchmark::kMillisecond)->MinTime(2);
+
+/// Masks of two people alone; detect_with_onnxruntime is what their boxes take.
+void two_masks(benchmark::State& state, const char* engine) {
+  MaskConfig config;
+  config.model_path = test::mask_network();
+  config.engine = engine;
+  if (config.model_path.empty() || (config.engine != "cpu" && !knows_onnxruntime()))
+    return state.SkipWithError("needs the network for masks and, for its engine, ONNX Runtime");
+  PersonSegmenter segmenter(config);
+  const cv::Mat image = test_image();
+  const std::vector<vision::Detection> people = {{"person", 0.9F, 325, 54, 152, 426},
+                                                 {"person", 0.9F, 473, 206, 128, 267}};
+  for (auto _ : state) benchmark::DoNotOptimize(segmenter.segment(image, people, 2));
+}
+BENCHMARK_CAPTURE(two_masks, onnxruntime, "onnxruntime:" ONNXRUNTIME_LIBRARY)
+    ->Unit(benchmark::kMillisecond)
+    ->MinTime(2);
+BENCHMARK_CAPTURE(two_masks, opencv, "cpu")->Unit(benchmark::kMillisecond)->MinTime(2);
 
 void preprocess(benchmark::State& state) {
   const cv::Mat image = test_image();

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "services/evaluation/detector/eval_detector_command.hpp"
+#include "tests/support/detector/mask_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
@@ -202,6 +203,26 @@ TEST_F(EvalDetectorCommand, takes_dark_masks_and_other_classes) {
   other.insert(other.end(), {"--class", "box"});
   EXPECT_EQ(run(other).code, 0);
   EXPECT_EQ(json()["models"][0]["as_seen"][0]["pixel_recall"], 0);
+}
+
+TEST_F(EvalDetectorCommand, measures_the_masks_of_another_network_inside_the_boxes) {
+  const std::string network = test::mask_network();
+  if (network.empty()) GTEST_SKIP() << "no network for masks: deploy/setup.sh --models";
+  write_mask("a.png");
+  const DetectorOutcome outcome =
+      run({"--masks", folder_.file("masks"), "--mask-model", network, "--json", folder_.file("out.json")});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("mask IoU"));
+  EXPECT_NEAR(json()["models"][0]["masks"][0]["box_precision"], 96.0 / 140, 0.05);
+}
+
+TEST_F(EvalDetectorCommand, refuses_a_network_for_masks_that_is_none) {
+  write_mask("a.png");
+  const std::string masks = folder_.file("masks"), tiny = folder_.file("tiny.onnx");
+  EXPECT_THAT(run({"--masks", masks, "--mask-model", tiny}).err, HasSubstr("is not a network for masks"));
+  EXPECT_THAT(run({"--masks", masks, "--mask-model", "/nowhere/x.onnx"}).err, HasSubstr("/nowhere/x.onnx"));
+  EXPECT_THAT(run({"--masks", masks, "--class", "box", "--mask-model", tiny}).err, HasSubstr("--mask-model needs"));
+  EXPECT_THAT(run_on_labels({"--mask-model", tiny}).err, HasSubstr("--mask-model needs --masks"));
 }
 
 TEST_F(EvalDetectorCommand, refuses_a_roll_that_is_none) {
