@@ -65,6 +65,7 @@ void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
   command.add_option("--class", options.class_name, "Masks: the class that they show")->capture_default_str();
   command.add_option("--mask-model", options.mask_model,
                      "Masks: how well this network's agree inside the boxes (person-mask, or an ONNX file)");
+  options.thresholds = {detector::DecodeConfig{}.confidence_threshold};
   command.add_option("--confidence", options.thresholds, "Masks: confidence thresholds")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "services/detector/core/detector_config.hpp"
-
 namespace CLI {
 class App;
 }
@@ -34,7 +32,7 @@ struct EvalDetectorOptions {
   std::string class_name = "person";           ///< what the masks show
   std::string mask_model;                      ///< the network for masks, a file or a name; empty: boxes alone
   bool dark_masks = false;                     ///< objects are black in the masks
-  std::vector<double> thresholds = {detector::DecodeConfig{}.confidence_threshold};  ///< for the masks
+  std::vector<double> thresholds;              ///< for the masks; add_eval_detector_command() sets the detector's own
   RollRange roll;
   bool derotate = false;  ///< masks: also with the image turned upright by the true roll
 };
