@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/detector/mask_network.hpp"
 
-#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -31,7 +30,8 @@ std::string mask_network() {
   if (there) return there.path;
   const char* const folder = std::getenv("RTD_MODEL_DIR");
   const fs::path source = fs::path(folder == nullptr ? "/nowhere" : folder) / "permissive/selfie_segmentation.tflite";
-  static const TemporaryFile converted{::testing::TempDir() + "rtd_masks_" + std::to_string(getpid()) + ".onnx"};
+  static const TemporaryFile converted{
+      (fs::temp_directory_path() / ("rtd_masks_" + std::to_string(getpid()) + ".onnx")).string()};
   if (fs::exists(converted.path)) return converted.path;
   if (!fs::exists(source)) return {};
   const std::string command =
