@@ -74,6 +74,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {msg::kImuTopic, {"camera"}, Roles{"slam"} + kOnlookers},
       {msg::kWheelTopic, {"camera"}, Roles{"slam"} + kOnlookers},
       {kDetections.name, {"detector", "link"}, Roles{"filter"} + kOnlookers},
+      {kPersonMasks.name, {"detector", "link"}, Roles{"filter"} + kOnlookers},
       {kDynamicMask.name, {"filter"}, Roles{"dense"} + kOnlookers},
       {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},
       {kKeyframes.name, {"slam"}, {"filter", "dense", "viewer"}},

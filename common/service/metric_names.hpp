@@ -43,6 +43,8 @@ inline constexpr char kDepthOffsetMs[] = "depth_offset_ms";
 // Detector
 inline constexpr char kDetectMs[] = "detect_ms";
 inline constexpr char kDetectMsMax[] = "detect_ms_max";
+inline constexpr char kMasksMs[] = "masks_ms";  ///< mean time of the masks of a frame
+inline constexpr char kMasks[] = "masks";       ///< persons that got one, of all frames
 inline constexpr char kRateHz[] = "rate_hz";
 inline constexpr char kLatencyP50Ms[] = "latency_p50_ms";
 inline constexpr char kLatencyP99Ms[] = "latency_p99_ms";

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/service/config.hpp"
 #include "common/service/model_table.hpp"
 
 namespace rtd::service {
@@ -69,13 +70,19 @@ std::vector<std::filesystem::path> search_folders(const EnvironmentReader& envir
   return folders;
 }
 
-}  // namespace
+/// What is looked for.
+struct Wanted {
+  std::string missing;  ///< "no detector weights"
+  std::string key;      ///< of the configuration
+  std::string configured;
+};
 
-ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment) {
+ModelSearch find(const Wanted& wanted, const EnvironmentReader& environment) {
+  const std::string& configured = wanted.configured;
   if (configured.find('/') != std::string::npos) {
     if (is_file(configured)) return {configured, {}};
     return {{},
-            missing(configured) + ": " + key_of(configured) + " is '" + configured + "', which is no file; correct it, or " +
+            wanted.missing + ": " + wanted.key + " is '" + configured + "', which is no file; correct it, or " +
                 advice(configured)};
   }
   const std::vector<std::string> names = names_of(configured);
@@ -86,8 +93,24 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
     looked.push_back(folder.string());
   }
   return {{},
-          missing(configured) + ": looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
+          wanted.missing + ": looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
               advice(configured)};
+}
+
+}  // namespace
+
+ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment) {
+  return find({missing(configured), key_of(configured), configured}, environment);
+}
+
+ModelSearch find_mask_model(const std::string& use, const std::string& configured,
+                            const EnvironmentReader& environment) {
+  if (use == "off") return {};
+  const std::string name = configured.empty() ? kMaskModel.file : configured;
+  ModelSearch found = find({missing(kMaskModel.file), key_of(kMaskModel.file), name}, environment);
+  if (!found && (use == "on" || !configured.empty()))
+    throw ConfigError(found.message + "; without masks: detector.masks: off (--masks off)");
+  return found;
 }
 
 std::string kernel_cache_folder(const EnvironmentReader& environment) {

@@ -24,6 +24,12 @@ struct ModelSearch {
 /// $HOME/.cache)/rtd-slam, then in rtd-slam/models of $XDG_DATA_DIRS (/usr/local/share, /usr/share).
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment);
 
+/// Looks in the same places for the network that turns person boxes into pixels (kMaskModel). `use` (key
+/// detector.masks) is auto, on or off; `configured` (key detector.mask_model) as above. Off finds nothing and has no
+/// message. Throws ConfigError where it is not found, but `use` is on or `configured` names it.
+ModelSearch find_mask_model(const std::string& use, const std::string& configured,
+                            const EnvironmentReader& environment);
+
 /// The folder of the user's cache for what OpenCL compiles for a device; empty without XDG_CACHE_HOME and HOME.
 std::string kernel_cache_folder(const EnvironmentReader& environment);
 

@@ -108,6 +108,23 @@ void bind_model(auto& binder, std::string& model) {
                  ", or an ONNX file: a path, or a name looked for in RTD_MODEL_DIR and the user's cache")
       .option("--model", "Dynamic points");
 }
+/// Of section `detector`: people as pixels.
+struct MaskSettings {
+  std::string use = "auto";
+  std::string model;
+
+  void bind(auto& binder) {
+    binder
+        .choice("masks", use, {"auto", "on", "off"},
+                "people as pixels beside their boxes; auto: where the network for it is there")
+        .option("--masks", "Dynamic points");
+    binder
+        .field("mask_model", model,
+               std::string("the network for it: ") + kMaskModel.name +
+                   ", or an ONNX file: a path, or a name looked for as that of model; empty: " + kMaskModel.file)
+        .option("--mask-model", "Dynamic points");
+  }
+};
 /// Of section `detector`.
 void bind_engine(auto& binder, std::string& engine) {
   binder.field("engine", engine, std::string("what computes the network: ") + msg::kEngineNames)

@@ -59,9 +59,10 @@ RollConfig roll_config(const ServiceConfig& config) {
           config.derotate_min_deg * kRadPerDeg};
 }
 
-std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
+/// `load()`, with what is wrong about a network as an error of the configuration.
+auto load_network(auto load) {
   try {
-    return std::make_unique<EngineGuard>(core_config(config), config.verify_engine);
+    return load();
   } catch (const ModelError& error) {
     throw service::ConfigError(error.what());
   } catch (const EngineError& error) {
@@ -73,7 +74,8 @@ std::unique_ptr<EngineGuard> load_detector(const ServiceConfig& config) {
 std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& config, service::Pace pace) {
   std::vector<std::unique_ptr<EngineGuard>> detectors;
   const int count = pace == service::Pace::kAsap ? config.workers : 1;
-  for (int i = 0; i < count; ++i) detectors.push_back(load_detector(config));
+  const auto load = [&] { return std::make_unique<EngineGuard>(core_config(config), config.verify_engine); };
+  for (int i = 0; i < count; ++i) detectors.push_back(load_network(load));
   return detectors;
 }
 
@@ -90,6 +92,20 @@ DetectorConfig core_config(const ServiceConfig& config) {
   return core;
 }
 
+MaskConfig mask_config(const ServiceConfig& config) {
+  const service::EnvironmentReader environment = service::process_environment();
+  const service::ModelSearch model = service::find_mask_model(config.masks.use, config.masks.model, environment);
+  if (!model && !model.message.empty())
+    SPDLOG_INFO("event=no_masks effect=\"boxes alone\" cause=\"{}\"", model.message);
+  MaskConfig masks = config.mask_core;
+  masks.model_path = model.path;
+  masks.engine = config.core.engine;
+  masks.onnxruntime = service::find_onnxruntime();
+  masks.kernel_cache = service::kernel_cache_folder(environment);
+  masks.threads = config.core.threads;
+  return masks;
+}
+
 void DetectorService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
   app.footer("rtd-detector --image FILE...  prints what it finds in image files and ends.");
 }
@@ -102,11 +118,13 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      detections_(runtime.bus.writer(bus::topics::kDetections)),
       slam_(service::follow_source("slam", runtime.heartbeat.process_gone())) {
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
-  input_ = std::make_unique<ImageInput>(runtime, config_.input,
-                                        [this](Arrival arrival) { arrivals_->push(std::move(arrival)); });
+  load_masks();
+  input_ = std::make_unique<ImageInput>(runtime, config_.input, [this](Arrival arrival) {
+    if (masks_) masks_->saw_image(arrival.stamp_ns);
+    arrivals_->push(std::move(arrival));
+  });
   if (config_.derotate == "on") {
     roll_ = std::make_shared<RollFeedback>(roll_config(config_));
     runtime_.stop.on_stop([roll = roll_] { roll->close(); });
@@ -125,6 +143,20 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
   report_engine(*detectors_.front());
 }
 
+/// The writer of boxes comes after that of masks: who reads both has then both.
+void DetectorService::load_masks() {
+  const MaskConfig masks = mask_config(config_);
+  if (!masks.model_path.empty()) {
+    const bool in_time = runtime_.pace == service::Pace::kRealtime;
+    masks_ = load_network([&] { return std::make_unique<MaskStage>(masks, detectors_.size(), in_time); });
+    mask_writer_ = runtime_.bus.writer(bus::topics::kPersonMasks);
+    runtime_.heartbeat.set_metric(service::metric::kMasks, 0);  // readers rely on it: masks come
+    SPDLOG_INFO("event=masks_loaded file={} weights=\"{}\" device=\"{}\"", masks.model_path,
+                service::describe_model(masks.model_path), masks_->segmenter().device());
+  }
+  detections_ = runtime_.bus.writer(bus::topics::kDetections);
+}
+
 /// A reader waits for its running callback, which may be blocked on the full queue.
 DetectorService::~DetectorService() {
   arrivals_->close();
@@ -132,26 +164,29 @@ DetectorService::~DetectorService() {
 
 service::ExitCode DetectorService::run() {
   std::vector<std::thread> others;
-  for (std::size_t i = 1; i < detectors_.size(); ++i) others.emplace_back([this, i] { work(*detectors_[i]); });
-  work(*detectors_.front());
+  for (std::size_t i = 1; i < detectors_.size(); ++i) others.emplace_back([this, i] { work(i); });
+  work(0);
   for (std::thread& other : others) other.join();
-  SPDLOG_INFO("event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f}", detected_,
-              arrivals_->dropped(), broken_,
-              total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(detected_, 1)), max_detect_ms_);
+  const MaskStage::Counters masks = masks_ ? masks_->counters() : MaskStage::Counters{};
+  SPDLOG_INFO(
+      "event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f} masks={} masks_ms={:.1f}",
+      detected_, arrivals_->dropped(), broken_,
+      total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(detected_, 1)), max_detect_ms_, masks.masks,
+      masks.mean_ms());
   return service::kOk;
 }
 
 /// Detects until the end. Several workers share the queue; their detections are published in the order of the images.
-void DetectorService::work(EngineGuard& detector) {
+void DetectorService::work(std::size_t worker) {
   while (!runtime_.stop.stop_requested()) {
     runtime_.heartbeat.tick();
     report_state();
     const std::optional<Taken> taken = take();
     if (!taken) continue;
     const std::int64_t started_ns = service::monotonic_ns();
-    const auto detections = detect(detector, taken->arrival);
+    const std::optional<Found> found = detect(worker, taken->arrival);
     const std::int64_t detected_ns = service::monotonic_ns();
-    publish_in_turn(taken->turn, detections);
+    publish_in_turn(taken->turn, found);
     const std::uint64_t frame = taken->arrival.frame ? taken->arrival.frame->seq : taken->turn;
     runtime_.trace.span("detect", started_ns, detected_ns, frame);
     runtime_.trace.span("publish", detected_ns, service::monotonic_ns(), frame);
@@ -166,10 +201,12 @@ std::optional<DetectorService::Taken> DetectorService::take() {
   return Taken{std::move(*arrival), taken_++};
 }
 
-void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& detections) {
+/// The masks first: who waits for both has both with the boxes, or soon after.
+void DetectorService::publish_in_turn(std::uint64_t turn, const std::optional<Found>& found) {
   std::unique_lock lock(turn_mutex_);
   turn_changed_.wait(lock, [&] { return published_ == turn; });
-  if (detections) detections_.write(*detections);
+  if (found && found->masks) mask_writer_.write(*found->masks);
+  if (found) detections_.write(found->detections);
   ++published_;
   turn_changed_.notify_all();
 }
@@ -186,21 +223,32 @@ std::optional<cv::Mat> DetectorService::image_of(const Arrival& arrival) {
 }
 
 /// Empty for an image that cannot be used, which is counted and logged.
-std::optional<msg::Detection2DArray> DetectorService::detect(EngineGuard& detector, const Arrival& arrival) {
+std::optional<DetectorService::Found> DetectorService::detect(std::size_t worker, const Arrival& arrival) {
   const std::int64_t started_ns = service::monotonic_ns();
+  EngineGuard& detector = *detectors_[worker];
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      msg::Detection2DArray detections = to_message(detector.detect_upright(*image, roll_for(arrival)),
-                                                    arrival.stamp_ns, runtime_.bus.frame(kCameraFrame));
+      const double roll_rad = roll_for(arrival);
+      const auto boxes = detector.detect_upright(*image, roll_rad);
+      const double boxes_ms = static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs;
+      Found found{to_message(boxes, arrival.stamp_ns, runtime_.bus.frame(kCameraFrame)), std::nullopt};
+      found.masks = find_masks(worker, {*image, boxes, roll_rad, boxes_ms}, found.detections.header);
       report_engine(detector);
-      count(static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs);
-      return detections;
+      count(boxes_ms);
+      return found;
     }
     skip(arrival, "not an image of a readable size");
   } catch (const std::exception& error) {  // data from outside never ends the process
     skip(arrival, error.what());
   }
   return std::nullopt;
+}
+
+/// For every image while masks have a reader, also where no person is: who waits for them need not guess.
+std::optional<msg::Image> DetectorService::find_masks(std::size_t worker, const BoxedImage& boxed,
+                                                      const msg::Header& header) {
+  if (!masks_ || mask_writer_.matched() == 0) return std::nullopt;
+  return to_message(masks_->segment(worker, boxed), boxed.color_bgr.size(), header);
 }
 
 /// Lockstep: the roll after the image before, for which slam's result is waited: same input, same boxes. Otherwise the
@@ -244,6 +292,10 @@ void DetectorService::count(double detect_ms) {
   runtime_.heartbeat.set_metric(service::metric::kFramesDropped, static_cast<double>(arrivals_->dropped()));
   runtime_.heartbeat.set_metric(service::metric::kDetectMs, total_detect_ms_ / static_cast<double>(detected_));
   runtime_.heartbeat.set_metric(service::metric::kDetectMsMax, max_detect_ms_);
+  if (!masks_) return;
+  const MaskStage::Counters masks = masks_->counters();
+  runtime_.heartbeat.set_metric(service::metric::kMasks, static_cast<double>(masks.masks));
+  runtime_.heartbeat.set_metric(service::metric::kMasksMs, masks.mean_ms());
 }
 
 bool DetectorService::peers_matched() const {

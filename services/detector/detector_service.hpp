@@ -25,6 +25,7 @@
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
 #include "services/detector/image_input.hpp"
+#include "services/detector/mask_stage.hpp"
 
 namespace CLI {
 class App;
@@ -73,6 +74,8 @@ struct ServiceConfig {
   int batch = 8;
   int decoders = 0;
   DetectorConfig core;
+  service::MaskSettings masks;
+  MaskConfig mask_core;
   bool verify_engine = false;
   int workers = 2;
   double max_rate_hz = 0;
@@ -96,6 +99,8 @@ struct ServiceConfig {
         .option("--decoders");
     core.bind(binder);
     service::bind_engine(binder, core.engine);
+    masks.bind(binder);
+    mask_core.bind(binder);
     binder
         .field("verify_engine", verify_engine,
                "compare the first ten images with the CPU, and continue with the CPU if they differ")
@@ -117,9 +122,13 @@ struct ServiceConfig {
 /// The part of the configuration for the network, with the file found and the folder for compiled kernels. Throws
 /// ConfigError without weights.
 DetectorConfig core_config(const ServiceConfig& config);
+/// The part for person masks; without a path there are none. Throws ConfigError when they are asked for and their
+/// network is not found.
+MaskConfig mask_config(const ServiceConfig& config);
 
-/// Images in, boxes out. Realtime pace: the newest image wins, what came meanwhile is dropped and counted. Asap and
-/// lockstep: every image gets its detections, in order, an empty array where nothing was found.
+/// Images in, boxes out, and before the boxes of an image which pixels are people, while a program reads them. Realtime
+/// pace: the newest image wins, what came meanwhile is dropped and counted. Asap and lockstep: every image gets its
+/// detections, in order, an empty array where nothing was found.
 class DetectorService {
  public:
   static constexpr const char* kName = "detector";
@@ -142,11 +151,19 @@ class DetectorService {
   };
   using Arrivals = concurrency::BoundedQueue<Arrival>;
 
+  /// What is published about an image.
+  struct Found {
+    msg::Detection2DArray detections;
+    std::optional<msg::Image> masks;
+  };
+
   static std::optional<cv::Mat> image_of(const Arrival& arrival);
-  void work(EngineGuard& detector);
+  void load_masks();
+  void work(std::size_t worker);
   std::optional<Taken> take();
-  std::optional<msg::Detection2DArray> detect(EngineGuard& detector, const Arrival& arrival);
-  void publish_in_turn(std::uint64_t turn, const std::optional<msg::Detection2DArray>& detections);
+  std::optional<Found> detect(std::size_t worker, const Arrival& arrival);
+  std::optional<msg::Image> find_masks(std::size_t worker, const BoxedImage& boxed, const msg::Header& header);
+  void publish_in_turn(std::uint64_t turn, const std::optional<Found>& found);
   void report_engine(const EngineGuard& detector);
   void skip(const Arrival& arrival, const std::string& cause);
   void count(double detect_ms);
@@ -160,6 +177,8 @@ class DetectorService {
   std::vector<std::unique_ptr<EngineGuard>> detectors_;  ///< one for each worker
   EngineLog engine_log_;
   std::shared_ptr<Arrivals> arrivals_;
+  std::unique_ptr<MaskStage> masks_;     ///< null: boxes alone
+  bus::Writer<msg::Image> mask_writer_;  ///< before the other writer: who reads both is matched here first
   bus::Writer<msg::Detection2DArray> detections_;
   const std::shared_ptr<bus::SourceGate> slam_;
   std::unique_ptr<ImageInput> input_;

@@ -21,7 +21,8 @@ constexpr const char* kTransform = "tf2_msgs/TFMessage";
 
 /// rtd's own images come from no camera.
 bool is_ours(const std::string& dds_topic) {
-  return dds_topic == bus::topics::kColorJpeg.name || dds_topic == bus::topics::kDynamicMask.name;
+  using namespace bus::topics;
+  return dds_topic == kColorJpeg.name || dds_topic == kPersonMasks.name || dds_topic == kDynamicMask.name;
 }
 
 std::string plain_dds_type(const bus::RawTopic& topic) {

@@ -30,6 +30,7 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
          "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
   refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
   refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
+  refuse(config.masks.use == "on", "they get boxes alone: leave detector.masks (--masks) at auto or off");
   refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
   refuse(!runtime.bus.robot().empty(), "--robot names the one robot of a detector: leave one of the two out");
 }

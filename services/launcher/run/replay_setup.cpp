@@ -77,6 +77,7 @@ void choose_topics(ReplaySetup& replay, const std::map<std::string, std::uint64_
   }
   replay.frames = counts.at(replay.topics.front());
   if (replay.features && has(frames)) replay.topics.push_back(frames);
+  if (!replay.features && has(kPersonMasks.name)) replay.topics.emplace_back(kPersonMasks.name);
   if (has(kCameraInfo.name)) replay.topics.emplace_back(kCameraInfo.name);
 }
 

@@ -95,6 +95,19 @@ std::string model_of_mode(const RunSetup& setup) {
   return service::find_model(service::kPaperModel, service::process_environment()).path;
 }
 
+/// A name that is a file from here, by its whole path.
+std::string absolute_file(const std::string& name) {
+  return !name.empty() && fs::is_regular_file(name) ? fs::absolute(name).string() : name;
+}
+
+void choose_masks(RunSetup& setup) {
+  const service::MaskSettings& masks = setup.services.masks;
+  setup.mask_model_path =
+      service::find_mask_model(masks.use, absolute_file(masks.model), service::process_environment()).path;
+  if (!setup.mask_model_path.empty())
+    setup.detector_note += "; masks: " + service::describe_model(setup.mask_model_path);
+}
+
 void choose_detector(RunSetup& setup) {
   if (setup.replay) {
     setup.detector_note = setup.replay.features ? "off (recorded features)" : "recorded boxes";
@@ -118,13 +131,14 @@ void choose_detector(RunSetup& setup) {
     setup.detector_note = "on another host";
     return;
   }
-  std::string configured = setup.services.model.empty() ? model_of_mode(setup) : setup.services.model;
-  if (!configured.empty() && fs::is_regular_file(configured)) configured = fs::absolute(configured).string();
+  const std::string configured =
+      absolute_file(setup.services.model.empty() ? model_of_mode(setup) : setup.services.model);
   const service::ModelSearch model = service::find_model(configured, service::process_environment());
   if (!model && !configured.empty()) throw ConfigError(model.message);
   setup.model_path = model.path;
   setup.weights_advice = model.message;
   setup.detector_note = model ? service::describe_model(model.path) : "off (no weights)";
+  if (model) choose_masks(setup);
 }
 
 ServicePlan plan(const RunSetup& setup, const std::string& name, ServiceRole role,
@@ -182,6 +196,12 @@ std::vector<std::string> dense_arguments(const RunSetup& setup) {
   return arguments;
 }
 
+std::vector<std::string> detector_arguments(const RunSetup& setup) {
+  std::vector<std::string> arguments = {"--model=" + setup.model_path};
+  if (!setup.mask_model_path.empty()) arguments.push_back("--mask-model=" + setup.mask_model_path);
+  return arguments;
+}
+
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
   if (!setup.model_path.empty() || setup.replay.detections || setup.remote_detector) return {};
   return {"--set", "filter.detector=off"};
@@ -212,6 +232,7 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
   binder.part_of_section("filter", [this](Part& filter) { service::bind_filter_mode(filter, filter_mode); });
   binder.part_of_section("detector", [this](Part& detector) {
     service::bind_model(detector, model);
+    masks.bind(detector);
     service::bind_engine(detector, engine);
   });
   binder.part_of_section("slam", [this](Part& slam) {
@@ -268,7 +289,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
     plans.back().ends_last = true;
   }
-  if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, {"--model=" + setup.model_path}));
+  if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, detector_arguments(setup)));
   if (filter) plans.push_back(plan(setup, "filter", ServiceRole::kEssential, filter_arguments(setup)));
   plans.push_back(plan(setup, "slam", ServiceRole::kEssential, slam_arguments(setup)));
   plans.back().when_restarted = load_checkpoint(setup.services.map.save);

@@ -57,6 +57,7 @@ struct ServiceSettings {
   std::string filter_mode = msg::kDefaultFilterMode;
   std::string model;   ///< ONNX file; empty: search
   std::string engine;  ///< of the detector
+  service::MaskSettings masks;
   service::MapFileConfig map;
   bool localize_only = false;
   service::BaseConfig base;
@@ -114,6 +115,7 @@ struct RunSetup : RunOptions {
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
   std::string model_path;                         ///< empty: no detector in this run
   std::string detector_note;                      ///< "YOLOX-nano, Apache-2.0", or "off (why)"
+  std::string mask_model_path;                    ///< empty: boxes alone
   bool remote_detector = false;                   ///< it runs on another host; the launcher does not start it
   std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
   bool save_map_asked = false;  ///< the user named the file

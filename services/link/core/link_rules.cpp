@@ -28,9 +28,14 @@ bool matches(const std::vector<std::string>& patterns, const std::string& dds_to
 }  // namespace
 
 const std::vector<std::string>& default_rules() {
-  static const std::vector<std::string> kRules = {
-      bus::topics::kColorJpeg.name, bus::topics::kCameraInfo.name, bus::topics::kPose.name,
-      bus::topics::kOdometry.name,  bus::topics::kTf.name,         std::string(kIn) + bus::topics::kDetections.name};
+  using namespace bus::topics;
+  static const std::vector<std::string> kRules = {kColorJpeg.name,
+                                                  kCameraInfo.name,
+                                                  kPose.name,
+                                                  kOdometry.name,
+                                                  kTf.name,
+                                                  std::string(kIn) + kDetections.name,
+                                                  std::string(kIn) + kPersonMasks.name};
   return kRules;
 }
 

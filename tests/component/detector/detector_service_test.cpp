@@ -4,10 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <vector>
 
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
@@ -41,6 +43,13 @@ class DetectorServiceTest : public test_support::ServiceFixture<DetectorService>
     config_.core.class_names = {"person", "box"};
     config_.derotate = "off";  // no slam here, but where a test plays it
     std::ofstream(config_.model, std::ios::binary) << test::tiny_network_onnx({});
+    config_.masks.use = "off";  // whatever this host has
+  }
+  /// With a network for masks and a reader of them.
+  void with_masks() {
+    config_.masks.use = "on";
+    config_.masks.model = (folder_ / "mask.onnx").string();
+    std::ofstream(config_.masks.model, std::ios::binary) << test::tiny_mask_network_onnx();
   }
 
   /// A 64x64 frame, white in one cell or black.
@@ -115,6 +124,67 @@ TEST_F(DetectorServiceTest, sends_boxes_and_empty_arrays) {
   EXPECT_NEAR(answers[0]->detections[0].bbox.center.position.y, 28.0, 0.01);
   EXPECT_EQ(answers[0]->header.frame_id, "camera_color_optical_frame");
   EXPECT_THAT(answers[1]->detections, SizeIs(0));
+}
+
+TEST_F(DetectorServiceTest, sends_masks_with_the_boxes_of_each_image) {
+  with_masks();
+  Inbox<msg::Image> masks;
+  receive(bus::topics::kPersonMasks, masks);
+  start(service::Pace::kLockstep);
+  send_frame(1, true);
+  ASSERT_TRUE(answer_box_.wait_count(1));
+  send_frame(2, false);
+  ASSERT_TRUE(answer_box_.wait_count(2));
+  ASSERT_TRUE(masks.wait_count(2)) << "also of an image without people";
+  const auto sent = masks.all();
+  EXPECT_EQ(msg::to_ns(sent[0]->header.stamp), 1);
+  EXPECT_EQ(sent[0]->width, 16U);
+  EXPECT_EQ(sent[0]->height, 16U);
+  EXPECT_EQ(sent[0]->header.frame_id, "camera_color_optical_frame");
+  EXPECT_EQ(sent[0]->data[16 * 7 + 11], 1) << "the white cell";
+  EXPECT_EQ(sent[0]->data[0], 0);
+  EXPECT_EQ(msg::to_ns(sent[1]->header.stamp), 2);
+  EXPECT_THAT(sent[1]->data, ::testing::Each(0));
+  EXPECT_TRUE(wait_metric(service::metric::kMasks, 1));
+  EXPECT_GT(metric(*states_.all().back(), service::metric::kMasksMs).value_or(0), 0.0);
+}
+
+TEST_F(DetectorServiceTest, masks_of_the_same_images_are_the_same_whoever_computes_them) {
+  with_masks();
+  Inbox<msg::Image> masks;
+  receive(bus::topics::kPersonMasks, masks);
+  start(service::Pace::kAsap);
+  for (std::int64_t stamp_ns = 0; stamp_ns < 20; ++stamp_ns) {
+    send_frame(stamp_ns, stamp_ns % 3 != 0);
+    ASSERT_TRUE(masks.wait_count(static_cast<std::size_t>(std::max<std::int64_t>(stamp_ns - 2, 0))));
+  }
+  ASSERT_TRUE(masks.wait_count(20));
+  for (std::size_t i = 0; i < 20; ++i) {
+    EXPECT_EQ(msg::to_ns(masks.at(i)->header.stamp), static_cast<std::int64_t>(i));
+    EXPECT_EQ(masks.at(i)->data, masks.at(i % 3 == 0 ? 0 : 1)->data) << i;
+  }
+}
+
+TEST_F(DetectorServiceTest, computes_no_masks_that_have_no_reader) {
+  with_masks();
+  start(service::Pace::kLockstep);
+  EXPECT_TRUE(wait_metric(service::metric::kMasks, 0)) << "says that it can";
+  send_frame(1, true);
+  ASSERT_TRUE(wait_metric("frames", 1));
+  EXPECT_EQ(metric(*states_.all().back(), service::metric::kMasks), 0);
+}
+
+TEST_F(DetectorServiceTest, masks_that_are_asked_for_need_their_network) {
+  service::Heartbeat heartbeat(*bus_, "detector", stop_);
+  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
+  config_.masks.use = "on";
+  config_.masks.model = (folder_ / "none.onnx").string();
+  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("none.onnx")));
+  config_.masks.use = "auto";
+  config_.masks.model = config_.model;  // finds boxes
+  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("tiny.onnx")));
 }
 
 TEST_F(DetectorServiceTest, continues_with_the_cpu_and_names_the_device_in_its_status) {

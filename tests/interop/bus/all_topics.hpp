@@ -32,6 +32,7 @@ void for_each_topic(Visitor visit) {
   visit(kColorJpeg);
   visit(kCameraInfo);
   visit(kDetections);
+  visit(kPersonMasks);
   visit(kDynamicMask);
   visit(kOdometry);
   visit(kPose);

@@ -140,4 +140,12 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
   return model + bytes_field(8, number_field(2, 11));
 }
 
+std::string tiny_mask_network_onnx() {
+  const Convolution mean{"m", "images", "mask", 3, 1, 1, 1.0F, 0, {0.0F}};
+  const std::string graph = bytes_field(1, node_of(mean)) + bytes_field(2, "tiny mask") + weights_of(mean, {}) +
+                            bytes_field(11, value_info("images", {1, 3, 64, 64})) +
+                            bytes_field(12, value_info("mask", {1, 1, 64, 64}));
+  return number_field(1, 6) + bytes_field(7, graph) + bytes_field(8, number_field(2, 11));
+}
+
 }  // namespace rtd::test

@@ -28,4 +28,7 @@ struct TinyNetwork {
 /// box is the anchor centred on the cell. All other anchors have objectness -20.
 std::string tiny_network_onnx(const TinyNetwork& network);
 
+/// A network for person masks of 64 x 64 px: the probability is the mean brightness of the pixel.
+std::string tiny_mask_network_onnx();
+
 }  // namespace rtd::test

@@ -31,11 +31,11 @@ TopicFacts facts(const Topic<T>& topic) {
 
 std::vector<TopicFacts> all_topics() {
   using namespace topics;
-  return {facts(kFrame),        facts(kFeatures),   facts(kKeyframes),    facts(kTracking),    facts(kStatus),
-          facts(kColorJpeg),    facts(kCameraInfo), facts(kDetections),   facts(kOdometry),    facts(kPose),
-          facts(kTf),           facts(kPath),       facts(kMapPoints),    facts(kDiagnostics), facts(kDynamicMask),
-          facts(kDensePoints),  facts(kMap),        facts(kMovers),       facts(kGroundTruth), facts(kMoverBoxes),
-          facts(kMoverMarkers), facts(kTfStatic),   facts(kOccupancyGrid)};
+  return {facts(kFrame),        facts(kFeatures),   facts(kKeyframes),     facts(kTracking),    facts(kStatus),
+          facts(kColorJpeg),    facts(kCameraInfo), facts(kDetections),    facts(kOdometry),    facts(kPose),
+          facts(kTf),           facts(kPath),       facts(kMapPoints),     facts(kDiagnostics), facts(kDynamicMask),
+          facts(kDensePoints),  facts(kMap),        facts(kMovers),        facts(kGroundTruth), facts(kMoverBoxes),
+          facts(kMoverMarkers), facts(kTfStatic),   facts(kOccupancyGrid), facts(kPersonMasks)};
 }
 
 TEST(Topics, have_names_of_their_own) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 
+#include "common/service/config.hpp"
 #include "common/service/model_table.hpp"
 
 namespace rtd::service {
@@ -15,6 +16,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 const std::string kUsualFile = kKnownModels.front().file;
 
@@ -146,6 +148,24 @@ TEST(KernelCache, lies_in_the_cache_of_the_user) {
   EXPECT_EQ(folder(), "/home/anna/.cache/rtd-slam/opencl");
   variables["XDG_CACHE_HOME"] = "/cache";
   EXPECT_EQ(folder(), "/cache/rtd-slam/opencl");
+}
+
+TEST_F(ModelLocator, finds_the_network_for_masks_in_the_same_folders) {
+  EXPECT_FALSE(find_mask_model("auto", "", all()));
+  EXPECT_THAT(find_mask_model("auto", "", all()).message,
+              AllOf(HasSubstr("selfie_segmentation.onnx"), HasSubstr(in_folder("models")), HasSubstr("setup.sh")));
+  const std::string expected = make(std::string("xdg/rtd-slam/") + kMaskModel.file);
+  EXPECT_EQ(find_mask_model("auto", "", all()).path, expected);
+  EXPECT_EQ(find_mask_model("on", kMaskModel.name, all()).path, expected);
+  EXPECT_EQ(find_mask_model("off", kMaskModel.name, all()).path, "");
+  EXPECT_EQ(describe_model(expected), "MediaPipe Selfie Segmentation, Apache-2.0");
+}
+
+TEST_F(ModelLocator, a_network_for_masks_that_is_asked_for_must_be_there) {
+  EXPECT_THAT([&] { find_mask_model("on", "", all()); },
+              ThrowsMessage<ConfigError>(AllOf(HasSubstr("selfie_segmentation.onnx"), HasSubstr("--masks off"))));
+  EXPECT_THAT([&] { find_mask_model("auto", "/nowhere/mine.onnx", all()); },
+              ThrowsMessage<ConfigError>(HasSubstr("detector.mask_model is '/nowhere/mine.onnx', which is no file")));
 }
 
 }  // namespace

@@ -28,5 +28,53 @@ TEST(DetectionsMessage, gives_boxes_by_centre_and_size) {
   EXPECT_DOUBLE_EQ(box.results[0].hypothesis.score, 0.5);
 }
 
+TEST(MasksMessage, is_a_grey_image_of_the_labels) {
+  const msg::Header header{msg::to_time(7), "camera_color_optical_frame"};
+  const msg::Image message = to_message({3, 2, {0, 1, 2, 0, 0, 1}}, {9, 8}, header);
+  EXPECT_EQ(msg::to_ns(message.header.stamp), 7);
+  EXPECT_EQ(message.header.frame_id, "camera_color_optical_frame");
+  EXPECT_EQ(message.width, 3U);
+  EXPECT_EQ(message.height, 2U);
+  EXPECT_EQ(message.encoding, "mono8");
+  EXPECT_EQ(message.step, 3U);
+  EXPECT_EQ(message.data, (std::vector<std::uint8_t>{0, 1, 2, 0, 0, 1}));
+}
+
+TEST(MasksMessage, has_its_size_also_without_people) {
+  const msg::Image message = to_message({}, {640, 481}, {});
+  EXPECT_EQ(message.width, 160U);
+  EXPECT_EQ(message.height, 121U);
+  EXPECT_EQ(message.data, std::vector<std::uint8_t>(160U * 121U, 0));
+}
+
+constexpr int kAll = 4;
+
+/// A camera of 33 ms, boxes of `boxes_ms`, 8 ms a mask.
+MaskBudget budget_with(double boxes_ms) {
+  MaskBudget budget;
+  for (int frame = 0; frame < 50; ++frame) {
+    budget.saw_image(std::int64_t{frame} * 33'000'000);
+    budget.took(boxes_ms, 16, 2);
+  }
+  return budget;
+}
+
+TEST(MaskBudget, gives_masks_the_time_that_the_boxes_leave) {
+  EXPECT_EQ(MaskBudget().fresh_at_most(kAll), kAll) << "nothing is known yet";
+  EXPECT_EQ(budget_with(0.1).fresh_at_most(kAll), kAll);
+  EXPECT_EQ(budget_with(12).fresh_at_most(kAll), 2);
+  EXPECT_EQ(budget_with(28).fresh_at_most(kAll), 1);
+  EXPECT_EQ(budget_with(60).fresh_at_most(kAll), 1) << "never none";
+}
+
+TEST(MaskBudget, takes_no_pause_for_the_rate_of_the_camera) {
+  MaskBudget budget = budget_with(28);
+  budget.saw_image(3'600'000'000'000);
+  budget.saw_image(3'600'033'000'000);
+  budget.saw_image(0);  // a recording that begins again
+  budget.saw_image(33'000'000);
+  EXPECT_EQ(budget.fresh_at_most(kAll), 1);
+}
+
 }  // namespace
 }  // namespace rtd::detector

@@ -34,6 +34,7 @@ TEST(LinkRules, by_default_images_and_poses_go_out_and_detections_come_in) {
        {"rt/anna/detector/detections", "rtd/anna/keyframes", "rt/anna/slam/map_points", "rt/rosout"})
     EXPECT_FALSE(rules.allows(kOut, topic)) << topic;
   EXPECT_TRUE(rules.allows(kIn, "rt/anna/detector/detections"));
+  EXPECT_TRUE(rules.allows(kIn, "rt/anna/detector/masks"));
   EXPECT_TRUE(rules.allows(kIn, "rtd/anna/status"));
   for (const char* topic : {"rt/tf", "rt/anna/slam/pose", "rt/anna/camera/color/image_raw/compressed"})
     EXPECT_FALSE(rules.allows(kIn, topic)) << topic;
