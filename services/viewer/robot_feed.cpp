@@ -93,7 +93,7 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
   if (options == options_) return;
   options_ = options;
   using namespace bus::topics;
-  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false});
+  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false, false});
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
   read(movers_, kMovers, options.has_value(),
        [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
@@ -106,6 +106,7 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
   read(detections_, kDetections, wanted.image,
        [](RobotMirror& to, const msg::Detection2DArray& detections) { to.add(detections); });
   read(masks_, kDynamicMask, wanted.mask, [](RobotMirror& to, const msg::Image& mask) { to.add(mask); });
+  read(people_, kPersonMasks, wanted.people, [](RobotMirror& to, const msg::Image& masks) { to.add_people(masks); });
   read(dense_, kDensePoints, wanted.dense, [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(cloud); });
 }
 

@@ -51,7 +51,7 @@ class RobotFeed {
   bus::Reader<msg::CompressedImage> images_;
   bus::Reader<msg::FeatureFrame> features_;
   bus::Reader<msg::Detection2DArray> detections_;
-  bus::Reader<msg::Image> masks_;
+  bus::Reader<msg::Image> masks_, people_;
   bus::Reader<msg::PointCloud2> dense_;
 };
 

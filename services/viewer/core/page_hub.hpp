@@ -15,10 +15,10 @@ namespace rtd::viewer {
 
 /// What a page wants to be sent; a hidden panel switches its part off.
 struct PageOptions {
-  bool image = true, mask = true, features = true, points = true, dense = false;
+  bool image = true, mask = true, features = true, points = true, dense = false, people = true;
   PageOptions operator|(const PageOptions& other) const {
-    return {image || other.image, mask || other.mask, features || other.features, points || other.points,
-            dense || other.dense};
+    return {image || other.image,   mask || other.mask,   features || other.features,
+            points || other.points, dense || other.dense, people || other.people};
   }
   bool operator==(const PageOptions&) const = default;
 };

@@ -147,13 +147,15 @@ Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame) {
   return writer.take();
 }
 
-Bytes mask(std::uint8_t robot, const msg::Image& image) {
+namespace {
+
+Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
   const std::size_t pixels = std::size_t{image.width} * image.height;
   constexpr std::size_t kMaxPixels = 1U << 20U;
   if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMaxPixels ||
       image.data.size() < pixels)
     return {};
-  ByteWriter writer = begin(Kind::kMask, robot, 0, 0);
+  ByteWriter writer = begin(kind, robot, 0, 0);
   writer.put(seconds(image.header.stamp));
   writer.put(static_cast<std::uint16_t>(image.width));
   writer.put(static_cast<std::uint16_t>(image.height));
@@ -167,6 +169,16 @@ Bytes mask(std::uint8_t robot, const msg::Image& image) {
   }
   writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
   return writer.take();
+}
+
+}  // namespace
+
+Bytes mask(std::uint8_t robot, const msg::Image& image) {
+  return runs(Kind::kMask, robot, image);
+}
+
+Bytes people(std::uint8_t robot, const msg::Image& image) {
+  return runs(Kind::kPeople, robot, image);
 }
 
 Bytes dense(std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,

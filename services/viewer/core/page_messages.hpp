@@ -36,6 +36,7 @@ enum class Kind : std::uint8_t {
   kFeatures = 9,
   kMask = 11,
   kDense = 12,
+  kPeople = 13,
 };
 
 /// What every binary message begins with.
@@ -62,6 +63,8 @@ Bytes image(std::uint8_t robot, const msg::CompressedImage& image);
 Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame);
 /// Runs of equal values. Empty for an image that is not mono8 of a plausible size.
 Bytes mask(std::uint8_t robot, const msg::Image& image);
+/// The same of the detector's person masks.
+Bytes people(std::uint8_t robot, const msg::Image& image);
 Bytes dense(std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
             float scale_m, std::span<const std::byte> points);
 

@@ -93,9 +93,9 @@ void PageSession::on_text(std::string_view message_text) {
   if (!message.is_object()) return;
   const std::string op = text(message, "op");
   if (op == "options") {
-    options_ = {flag(message, "image", options_.image), flag(message, "mask", options_.mask),
+    options_ = {flag(message, "image", options_.image),       flag(message, "mask", options_.mask),
                 flag(message, "features", options_.features), flag(message, "points", options_.points),
-                flag(message, "dense", options_.dense)};
+                flag(message, "dense", options_.dense),       flag(message, "people", options_.people)};
     const auto robot = message.find("robot");
     if (robot != message.end() && robot->is_number_unsigned()) watched_ = robot->get<std::uint64_t>();
   } else if (op == "call") {
@@ -112,6 +112,7 @@ void PageSession::on_text(std::string_view message_text) {
 PageOptions PageSession::options(std::uint8_t robot) const {
   PageOptions options = options_;
   if (watched_ && *watched_ != robot) options.image = options.mask = options.features = false;
+  options.people = options.people && options.image;
   return options;
 }
 
@@ -271,6 +272,7 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
     const PageOptions wanted = options(robot.index());
     if (wanted.image && view->image) sent.view.emplace_back(false, view->image);
     if (wanted.image && view->boxes) sent.view.emplace_back(true, view->boxes);
+    if (wanted.people && view->people) sent.view.emplace_back(false, view->people);
     if (wanted.mask && view->mask) sent.view.emplace_back(false, view->mask);
     if (wanted.features && view->features) sent.view.emplace_back(false, view->features);
     if (sent.view.empty()) return std::nullopt;

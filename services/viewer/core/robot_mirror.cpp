@@ -115,7 +115,7 @@ void TruthTrack::align() {
 
 std::size_t View::bytes() const {
   std::size_t bytes = 0;
-  for (const Payload& part : {image, features, mask, boxes}) bytes += part ? part->size() : 0;
+  for (const Payload& part : {image, features, mask, boxes, people}) bytes += part ? part->size() : 0;
   return bytes;
 }
 
@@ -144,6 +144,11 @@ void RobotMirror::add(const msg::Detection2DArray& detections) {
 void RobotMirror::add(const msg::Image& mask) {
   Bytes bytes = page::mask(index_, mask);
   if (!bytes.empty()) keep(masks_, to_ns(mask.header.stamp), shared(std::move(bytes)));
+}
+
+void RobotMirror::add_people(const msg::Image& masks) {
+  Bytes bytes = page::people(index_, masks);
+  if (!bytes.empty()) keep(people_, to_ns(masks.header.stamp), shared(std::move(bytes)));
 }
 
 void RobotMirror::add(const msg::ServiceStatus& status, std::int64_t received_ns) {
@@ -250,6 +255,7 @@ std::optional<View> RobotMirror::newest_view() const {
   }
   view.mask = at(masks_, view.stamp_ns, kSameFrameNs);
   view.boxes = at(boxes_, view.stamp_ns, kBoxesStayNs);
+  view.people = at(people_, view.stamp_ns, kBoxesStayNs);
   return view;
 }
 

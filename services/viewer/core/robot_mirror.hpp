@@ -69,7 +69,7 @@ inline constexpr std::size_t kItems = 6;
 /// An image with what the other services found in it. Parts that are missing are null.
 struct View {
   std::int64_t stamp_ns = 0;
-  Payload image, features, mask, boxes;
+  Payload image, features, mask, boxes, people;
   std::size_t bytes() const;
 };
 
@@ -84,6 +84,8 @@ class RobotMirror {
   void add(const msg::CompressedImage& image);
   void add(const msg::Detection2DArray& detections);
   void add(const msg::Image& mask);
+  /// The detector's person masks.
+  void add_people(const msg::Image& masks);
   void add(const msg::ServiceStatus& status, std::int64_t received_ns);
   void add(const msg::PointCloud2& dense);
   void add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
@@ -134,7 +136,7 @@ class RobotMirror {
   const std::uint8_t index_;
   MapMirror map_;
   std::array<Message, kItems> items_;
-  Overlays images_, features_, masks_, boxes_;
+  Overlays images_, features_, masks_, boxes_, people_;
   std::map<std::string, KnownService> services_;
   std::optional<std::array<float, msg::kFilterStages>> filter_stage_ms_;
   TruthTrack truth_;

@@ -105,7 +105,7 @@ class App {
       const message = decode(buffer);
       if (!message) return;
       this.session.applyBinary(message);
-      if (["image", "features", "mask"].includes(message.type)) {
+      if (["image", "features", "people", "mask"].includes(message.type)) {
         if (message.robot === this.selected) this.image.update(this.robot);
         return;
       }
@@ -184,7 +184,8 @@ class App {
   sendOptions() {
     const { layers, overlays } = this.settings;
     const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;
-    const options = { op: "options", image, mask: image && overlays.mask, features: image && overlays.features,
+    const options = { op: "options", image, mask: image && overlays.mask, people: image && overlays.people,
+                      features: image && overlays.features,
                       points: layers.points, dense: layers.dense, robot: this.selected };
     const text = JSON.stringify(options);
     if (text !== this.options && this.connection.send(options)) this.options = text;

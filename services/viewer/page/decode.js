@@ -96,7 +96,7 @@ function features(reader, count) {
   return { stamp_s, width, height, us, vs, removed };
 }
 
-function dynamicMask(reader, count) {
+function maskRuns(reader, count) {
   return { stamp_s: reader.f64(), width: reader.u16(), height: reader.u16(), runs: reader.bytes(count) };
 }
 
@@ -126,8 +126,9 @@ const kBodies = {
   7: ["ground_truth", (reader, count) => ({ start: reader.u32(), positions: reader.f32s(3 * count) })],
   8: ["image", image],
   9: ["features", features],
-  11: ["mask", dynamicMask],
+  11: ["mask", maskRuns],
   12: ["dense", densePoints],
+  13: ["people", maskRuns],
 };
 
 /** The message as {type, robot, map, ...}; null for a kind that a newer server may send. */
@@ -140,7 +141,8 @@ export function decode(buffer) {
   return { type, robot, map, count, ...body(reader, count) };
 }
 
-/** One value per pixel, row by row: 255 moves or may move, 128 unknown, 0 static. */
+/** One value per pixel, row by row. Of the dynamic mask: 255 moves or may move, 128 unknown, 0 static; of people: 0 none,
+    n the n-th box. */
 export function expandMask({ width, height, runs }) {
   const mask = new Uint8Array(width * height);
   let at = 0;

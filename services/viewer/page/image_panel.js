@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The newest image of the camera with what the filter says about it: features, boxes, dynamic mask.
+// The newest image of the camera with what the filter says about it: features, boxes, person masks,
+// dynamic mask.
 
 import { byId, setText } from "./dom.js";
 import { expandMask } from "./decode.js";
@@ -9,6 +10,11 @@ import { count } from "./format.js";
 import { kKept, kRemoved } from "./palette.js";
 
 const kMoving = [239, 68, 68, 105], kUnknown = [245, 158, 11, 60];
+const kPeople = [[56, 189, 248, 120], [192, 132, 252, 120], [74, 222, 128, 120], [251, 146, 60, 120], [244, 114, 182, 120]];
+const kColorOf = {
+  mask: (value) => (value === 255 ? kMoving : kUnknown),
+  people: (label) => kPeople[(label - 1) % kPeople.length],
+};
 const kFeatureRadius_px = 1.7;   // on the screen
 const kFont_px = 12;
 
@@ -20,7 +26,7 @@ export class ImagePanel {
     this.canvas = byId("image");
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
     this.legend = { kept: byId("kept"), removed: byId("removed"), boxes: byId("boxes") };
-    this.mask = document.createElement("canvas");
+    this.masks = { mask: { canvas: document.createElement("canvas") }, people: { canvas: document.createElement("canvas") } };
     for (const name of Object.keys(settings.overlays)) this.#bindSwitch(name);
   }
 
@@ -96,27 +102,31 @@ export class ImagePanel {
     this.scale = image.width / (this.canvas.clientWidth || image.width);   // image pixels per pixel of the screen
     this.context.drawImage(this.bitmap, 0, 0, image.width, image.height);
     const { overlays } = this.settings;
-    if (overlays.mask) this.#drawMask(this.robot.overlay("mask"));
+    if (overlays.people) this.#drawMask("people");
+    if (overlays.mask) this.#drawMask("mask");
     if (overlays.features) this.#drawFeatures(this.robot.overlay("features"));
     if (overlays.boxes) this.#drawBoxes(this.robot.overlay("boxes"));
     this.#describe();
   }
 
-  #drawMask(mask) {
-    if (!mask || mask.width * mask.height === 0) return;
-    if (mask !== this.drawnMask) this.#paintMask(mask);
+  /** name: of the overlay, "mask" or "people". */
+  #drawMask(name) {
+    const overlay = this.robot.overlay(name), drawn = this.masks[name];
+    if (!overlay || overlay.width * overlay.height === 0) return;
+    if (overlay !== drawn.overlay) this.#paintMask(drawn, overlay, kColorOf[name]);
     this.context.imageSmoothingEnabled = false;
-    this.context.drawImage(this.mask, 0, 0, this.canvas.width, this.canvas.height);
+    this.context.drawImage(drawn.canvas, 0, 0, this.canvas.width, this.canvas.height);
     this.context.imageSmoothingEnabled = true;
   }
 
-  #paintMask(mask) {
-    this.drawnMask = mask;
-    this.mask.width = mask.width;
-    this.mask.height = mask.height;
-    const context = this.mask.getContext("2d", { willReadFrequently: true }), pixels = context.createImageData(mask.width, mask.height);
-    expandMask(mask).forEach((value, i) => {
-      if (value > 0) pixels.data.set(value === 255 ? kMoving : kUnknown, 4 * i);
+  #paintMask(drawn, overlay, colorOf) {
+    const { canvas } = drawn, { width, height } = overlay;
+    drawn.overlay = overlay;
+    canvas.width = width;
+    canvas.height = height;
+    const context = canvas.getContext("2d", { willReadFrequently: true }), pixels = context.createImageData(width, height);
+    expandMask(overlay).forEach((value, i) => {
+      if (value > 0) pixels.data.set(colorOf(value), 4 * i);
     });
     context.putImageData(pixels, 0, 0);
   }

@@ -27,7 +27,7 @@ export class RobotState {
     this.playback = null;
     this.truthError = null;
     this.image = null;
-    this.overlays = { boxes: null, features: null, mask: null };
+    this.overlays = { boxes: null, features: null, people: null, mask: null };
     this.history = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
   }
 
@@ -144,7 +144,7 @@ export class Session {
     const robot = this.robot(message.robot);
     if (message.type === "image") {
       robot.image = message;
-    } else if (message.type === "features" || message.type === "mask") {
+    } else if (["features", "people", "mask"].includes(message.type)) {
       robot.overlays[message.type] = message;
     } else {
       if (!robot.maps.has(message.map)) this.generation += 1;

@@ -13,7 +13,7 @@ export const kLayers = {
 const kDefaults = {
   themeChoice: "auto", large: false, coloring: "height",
   layers: { points: true, keyframes: true, edges: true, trajectory: true, movers: true, truth: true, dense: false, grid: true },
-  overlays: { features: true, boxes: true, mask: true },
+  overlays: { features: true, boxes: true, people: true, mask: true },
   closedPanels: [], tab: "image",
 };
 

@@ -146,6 +146,7 @@ class Attack {
     give<msg::CompressedImage>("image", hostile, [&](const auto& image) { mirror_->add(image); });
     give<msg::Detection2DArray>("boxes", hostile, [&](const auto& boxes) { mirror_->add(boxes); });
     give<msg::Image>("mask", hostile, [&](const auto& mask) { mirror_->add(mask); });
+    give<msg::Image>("people", hostile, [&](const auto& masks) { mirror_->add_people(masks); });
     give<msg::PointCloud2>("cloud", hostile, [&](const auto& cloud) { mirror_->add(cloud); });
     give_features(hostile);
     now_ns_ += 33'333'333;

@@ -34,7 +34,7 @@ export function cameraView(time_s) {
     const light = 150 - 0.9 * row + 0.3 * column;
     return row > 44 ? [118 - row, 92 - row / 2, 70] : [light, light - 4, light - 14];
   };
-  return { jpeg: flatJpeg(kWidth / kBlock, kHeight / kBlock, color), box, features: featuresOf(box, shift), mask: maskOf(box) };
+  return { jpeg: flatJpeg(kWidth / kBlock, kHeight / kBlock, color), box, features: featuresOf(box, shift), mask: maskOf(box), people: labelsOf(box) };
 }
 
 function featuresOf(box, shift) {
@@ -55,4 +55,11 @@ function maskOf(box) {
     values[i] = inside(box, u, v) ? 255 : inside(wide, u, v) ? 128 : 0;
   });
   return { width, height, values };
+}
+
+/** Label 1 on the upper half of the person. */
+function labelsOf(box) {
+  const width = kWidth / kMaskStep, body = { ...box, x: box.x + 16, w: box.w - 32, h: box.h / 2 };
+  return Uint8Array.from({ length: (width * kHeight) / kMaskStep },
+    (_, i) => (inside(body, (i % width) * kMaskStep, Math.floor(i / width) * kMaskStep) ? 1 : 0));
 }

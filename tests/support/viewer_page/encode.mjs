@@ -98,14 +98,16 @@ export function features(stamp_s, width, height, list, at) {
 }
 
 /** mask: one value per pixel, row by row. */
-export function dynamicMask(stamp_s, width, height, mask, at) {
+function maskRuns(kind, stamp_s, width, height, mask, at) {
   const runs = [];
   for (let i = 0, end; i < mask.length; i = end) {
     for (end = i + 1; end < mask.length && mask[end] === mask[i] && end - i < 256; ++end);
     runs.push(mask[i], end - i - 1);
   }
-  return new Writer(11, runs.length, at).f64(stamp_s).u16(width).u16(height).raw(runs).done();
+  return new Writer(kind, runs.length, at).f64(stamp_s).u16(width).u16(height).raw(runs).done();
 }
+export const dynamicMask = (...mask) => maskRuns(11, ...mask);
+export const personMasks = (...labels) => maskRuns(13, ...labels);
 
 /** list: [[x, y, z, r, g, b]], m */
 export function densePoints(start, total, origin, scale_m, list, at) {

@@ -79,10 +79,11 @@ export class FakeRobot {
   }
 
   view() {
-    const { jpeg, box, features, mask } = cameraView(this.time_s), { stamp_s, at } = this;
+    const { jpeg, box, features, mask, people } = cameraView(this.time_s), { stamp_s, at } = this;
     return [
       encode.image(stamp_s, kWidth, kHeight, jpeg, at), encode.features(stamp_s, kWidth, kHeight, features, at),
       encode.dynamicMask(stamp_s, mask.width, mask.height, mask.values, at),
+      encode.personMasks(stamp_s, mask.width, mask.height, people, at),
       { type: "boxes", robot: this.index, stamp_s, boxes: [box] },
     ];
   }

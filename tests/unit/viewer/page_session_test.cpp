@@ -170,9 +170,9 @@ TEST_F(PageSessionTest, ten_thousand_keyframes_arrive_within_five_seconds) {
 
 TEST_F(PageSessionTest, hidden_panels_cost_nothing) {
   const auto page = hub.open();
-  EXPECT_EQ(hub.options(0), (PageOptions{true, true, true, true, false}));
+  EXPECT_EQ(hub.options(0), (PageOptions{true, true, true, true, false, true}));
   page->on_text(R"({"op":"options","image":false,"mask":false,"features":false})");
-  EXPECT_EQ(hub.options(0), (PageOptions{false, false, false, true, false}));
+  EXPECT_EQ(hub.options(0), (PageOptions{false, false, false, true, false, false}));
   const auto other = hub.open();
   EXPECT_TRUE(hub.options(0)->image) << "another page wants it";
 }
@@ -181,7 +181,7 @@ TEST_F(PageSessionTest, images_are_those_of_the_robot_that_is_looked_at) {
   RobotMirror *anna = hub.robot("anna"), *bert = hub.robot("bert");
   const auto page = hub.open();
   page->on_text(R"({"op":"options","robot":1})");
-  EXPECT_FALSE(hub.options(0)->image || hub.options(0)->mask || hub.options(0)->features);
+  EXPECT_FALSE(hub.options(0)->image || hub.options(0)->mask || hub.options(0)->features || hub.options(0)->people);
   EXPECT_TRUE(hub.options(0)->points) << "maps of all robots are drawn";
   EXPECT_TRUE(hub.options(1)->image);
   msg::CompressedImage image{.format = "jpeg", .data = {1, 2, 3}};

@@ -108,6 +108,23 @@ TEST(RobotMirror, a_mask_is_sent_as_runs) {
   EXPECT_EQ(mirror.newest_view()->mask, nullptr) << "too few bytes";
 }
 
+TEST(RobotMirror, person_masks_are_runs_of_labels_beside_the_boxes) {
+  RobotMirror mirror(2);
+  msg::Image masks{.header = {stamp(1000), ""}, .height = 1, .width = 160, .encoding = "mono8", .step = 160};
+  masks.data.assign(160, 0);
+  masks.data[3] = 2;
+  mirror.add_people(masks);
+  mirror.add(image(1300));
+  const Payload people = mirror.newest_view()->people;
+  ASSERT_NE(people, nullptr) << "as long as the boxes of a slow detector";
+  EXPECT_EQ(at<std::uint8_t>(people, 0), 13);
+  EXPECT_EQ(at<std::uint32_t>(people, 4), 6U) << "three runs";
+  EXPECT_EQ(at<std::uint8_t>(people, 22), 2) << "the label of the second run";
+  EXPECT_EQ(mirror.newest_view()->mask, nullptr);
+  mirror.add(image(1500));
+  EXPECT_EQ(mirror.newest_view()->people, nullptr);
+}
+
 TEST(RobotMirror, a_pose_says_when_it_was_ready_and_what_it_cost) {
   RobotMirror mirror(1);
   mirror.add(*features(1000));

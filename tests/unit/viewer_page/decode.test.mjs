@@ -59,6 +59,13 @@ test("a mask comes back pixel by pixel, runs longer than 256 included", () => {
   assert.deepEqual(expandMask(mask), pixels);
 });
 
+test("person masks are runs of labels", () => {
+  const labels = Uint8Array.from({ length: 160 * 3 }, (_, i) => (i % 160 < 20 ? 2 : 0));
+  const people = decoded(encode.personMasks(1, 160, 3, labels));
+  assert.equal(people.type, "people");
+  assert.deepEqual(expandMask(people), labels);
+});
+
 test("a mask with more pixels than its size is refused", () => {
   const mask = decoded(encode.dynamicMask(1, 10, 10, new Uint8Array(200)));
   assert.throws(() => expandMask(mask), /more than 10 x 10/);
