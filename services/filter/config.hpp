@@ -16,6 +16,7 @@ struct ServiceConfig {
   FilterConfig core;
   std::string mode = msg::kDefaultFilterMode;
   std::string detector = "auto";
+  std::string person_masks = "on";
   int detections_timeout_ms = 5000;
   int feedback_timeout_ms = 3000;
   bool shed_load = true;

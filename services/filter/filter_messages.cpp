@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/filter_messages.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,20 @@ bool usable(const vision::Detection& box) {
 
 bool removed(const msg::Feature& feature) {
   return (feature.flags & msg::kFeatureRemoved) != 0;
+}
+
+/// Why masks cannot belong to these detections; empty when they can.
+std::string misfit(const DetectionBatch& batch, const msg::FrameView& frame) {
+  const vision::PersonMasks& masks = batch.masks;
+  if (masks.empty()) return {};
+  const auto cells = [](std::uint32_t px) { return (static_cast<int>(px) - 1) / vision::kMaskStepPx + 1; };
+  const int columns = cells(frame.width), rows = cells(frame.height);
+  if (masks.columns != columns || masks.rows != rows)
+    return fmt::format("{}x{} labels where the frame has {}x{}", masks.columns, masks.rows, columns, rows);
+  const std::uint8_t highest = *std::ranges::max_element(masks.labels);
+  if (highest > batch.detections.size())
+    return fmt::format("label {} of {} detections", highest, batch.detections.size());
+  return {};
 }
 
 }  // namespace
@@ -44,6 +60,26 @@ DetectionBatch to_detection_batch(const msg::Detection2DArray& message) {
     batch.detections.resize(kMaxBoxes);
   }
   return batch;
+}
+
+MaskMessage to_person_masks(const msg::Image& message) {
+  const std::size_t pixels = std::size_t{message.width} * message.height;
+  if (message.encoding != "mono8" || message.step != message.width || message.data.size() != pixels)
+    return {{},
+            fmt::format("{}x{} px as '{}' with step {} in {} bytes; mono8 without gaps is needed", message.width,
+                        message.height, message.encoding, message.step, message.data.size())};
+  return {{static_cast<int>(message.width), static_cast<int>(message.height), message.data}, {}};
+}
+
+std::string drop_misfits(std::vector<DetectionBatch>& batches, const msg::FrameView& frame) {
+  std::string last;
+  for (DetectionBatch& batch : batches) {
+    const std::string cause = misfit(batch, frame);
+    if (cause.empty()) continue;
+    batch.masks = {};
+    last = cause;
+  }
+  return last;
 }
 
 std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -15,6 +17,15 @@ namespace rtd::filter {
 /// Best hypothesis of every box. Boxes without a hypothesis, without area or with numbers that are not finite are left
 /// out; of more than 300, the best are kept.
 DetectionBatch to_detection_batch(const msg::Detection2DArray& message);
+
+/// Labels of the detector's topic of masks; without any where the message is broken.
+struct MaskMessage {
+  vision::PersonMasks masks;
+  std::string problem;  ///< another encoding than mono8, or a step or number of bytes that does not fit the size
+};
+MaskMessage to_person_masks(const msg::Image& message);
+/// Takes masks away that cannot belong to their detections in a frame of this size. Why, of the last one; empty: none.
+std::string drop_misfits(std::vector<DetectionBatch>& batches, const msg::FrameView& frame);
 
 /// slam's pose of a frame; nullopt when it did not track that frame.
 std::optional<SlamPose> to_slam_pose(const msg::TrackingResult& result);

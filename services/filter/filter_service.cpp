@@ -59,6 +59,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
     if (status.service != "detector") return;
     detector_alive_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
+    detector_masks_ = std::ranges::count(status.metrics, service::metric::kMasks, &msg::Metric::name) > 0;
   });
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
   mask_writer_ = runtime.bus.writer(bus::topics::kDynamicMask);
@@ -69,10 +70,11 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
   keyframe_reader_ = runtime.bus.reader<msg::KeyframeEvent>(
       bus::topics::kKeyframes,
       [this](const std::shared_ptr<const msg::KeyframeEvent>& event) { feedback_->put(*event); }, slam_->callbacks());
+  if (config_.person_masks == "on") read_masks();
   detection_reader_ = runtime.bus.reader<msg::Detection2DArray>(
       bus::topics::kDetections,
       [this](const std::shared_ptr<const msg::Detection2DArray>& message) {
-        detections_->put(to_detection_batch(*message));
+        detections_->put(to_detection_batch(*message), message->detections.size());
       },
       detector_->callbacks());
   frame_reader_ = bus::FrameReader(
@@ -279,7 +281,24 @@ void FilterService::watch_load(const msg::TrackingResult& result) {
 DetectorUpdate FilterService::collect_detections(const msg::FrameView& frame) {
   if (!looks_at_boxes(filter_.mode()) || config_.detector == "off") return {};
   if (runtime_.pace != service::Pace::kRealtime) wait_for_detections(frame);
-  return {detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
+  DetectorUpdate update{detector_seen_ && !detector_gone_, detections_->take_until(frame.stamp_ns)};
+  const std::string cause = drop_misfits(update.batches, frame);
+  if (!cause.empty() && misfit_log_.pass())
+    SPDLOG_WARN("event=masks_ignored cause=\"{}\" effect=\"boxes alone\"", cause);
+  return update;
+}
+
+/// Broken ones count as received and empty, so that no frame waits for them.
+void FilterService::read_masks() {
+  mask_reader_ = runtime_.bus.reader<msg::Image>(
+      bus::topics::kPersonMasks,
+      [this](const std::shared_ptr<const msg::Image>& message) {
+        MaskMessage received = to_person_masks(*message);
+        if (!received.problem.empty() && broken_masks_log_.pass())
+          SPDLOG_WARN("event=masks_ignored cause=\"{}\" effect=\"boxes alone\"", received.problem);
+        detections_->put_masks(msg::to_ns(message->header.stamp), std::move(received.masks));
+      },
+      detector_->callbacks());
 }
 
 void FilterService::wait_for_detections(const msg::FrameView& frame) {
@@ -291,7 +310,13 @@ void FilterService::wait_for_detections(const msg::FrameView& frame) {
     return waited_ns > std::int64_t{config_.detections_timeout_ms} * 1'000'000 ||
            (waited_ns > kPatienceNs && !runtime_.heartbeat.alive("detector"));
   };
-  if (detections_->wait_for(frame.stamp_ns, give_up) || runtime_.stop.stop_requested()) return;
+  if (detections_->wait_for(frame.stamp_ns, give_up)) {
+    const bool complete = !masks_come() || detections_->wait_for_masks(frame.stamp_ns, give_up);
+    if (!complete && !runtime_.stop.stop_requested() && wait_log_.pass())
+      SPDLOG_WARN("event=no_masks frame={} effect=\"boxes alone\"", frame.seq);
+    return;
+  }
+  if (runtime_.stop.stop_requested()) return;
   ++unpaired_;
   if (wait_log_.pass()) SPDLOG_WARN("event=no_detections frame={} total={}", frame.seq, unpaired_);
 }

@@ -31,8 +31,8 @@ namespace rtd::filter {
 /// Frames and detections in, features with their static probability out. Realtime pace: never waits for the detector;
 /// at most 2 frames wait, the oldest is dropped and counted; features of the next frame are found in a thread of its
 /// own while a frame is judged; sheds load while poses come late (common/service/load_step.hpp). Asap and lockstep:
-/// every frame, with the detections of exactly that frame; lockstep also after slam's result for the frame before, so
-/// that every run is the same.
+/// every frame, with the detections, and the masks if they come, of exactly that frame; lockstep also after slam's
+/// result for the frame before, so that every run is the same.
 class FilterService {
  public:
   static constexpr const char* kName = "filter";
@@ -77,6 +77,9 @@ class FilterService {
   void apply_slam_feedback();
   DetectorUpdate collect_detections(const msg::FrameView& frame);
   void wait_for_detections(const msg::FrameView& frame);
+  /// By the detector's heartbeat, or because a program writes them: the heartbeat of a replay does not say it.
+  bool masks_come() const { return mask_reader_ && (detector_masks_ || mask_reader_.matched() > 0); }
+  void read_masks();
   msg::DetectionUse use_of(const DetectorUpdate& detector, const FilterResult& result, std::int64_t stamp_ns) const;
   void watch_detector();
   void count(const FilterResult& result);
@@ -96,6 +99,7 @@ class FilterService {
   bus::Writer<msg::Image> mask_writer_;
   const std::shared_ptr<bus::SourceGate> camera_, detector_, slam_;
   bus::FrameReader frame_reader_;
+  bus::Reader<msg::Image> mask_reader_;  ///< before the other reader: who writes both is matched here first
   bus::Reader<msg::Detection2DArray> detection_reader_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
@@ -103,9 +107,12 @@ class FilterService {
   std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
   std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
   bool detector_seen_ = false, detector_gone_ = false;
+  std::atomic<bool> detector_masks_{false};                  ///< its heartbeat says that it sends masks
   std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames
   service::RateLimit defect_log_{std::chrono::seconds(1)}, wait_log_{std::chrono::seconds(1)};
+  service::RateLimit misfit_log_{std::chrono::seconds(10)};
+  service::RateLimit broken_masks_log_{std::chrono::seconds(10)};  ///< of a bus thread
   std::optional<bus::CommandDesk> commands_;
   std::thread preparing_;  // these two last: they use the others
 };

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/inboxes.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace rtd::filter {
 namespace {
 
-constexpr std::size_t kMaxStamps = 64;
 constexpr std::chrono::milliseconds kAskPeriod{50};
 
 constexpr std::size_t kMaxWaiting = 1024;
@@ -20,44 +18,67 @@ void keep_newest(Map& map) {
 
 }  // namespace
 
-void DetectionInbox::put(DetectionBatch batch) {
+void DetectionInbox::put(DetectionBatch batch, std::size_t in_message) {
   const std::lock_guard lock(mutex_);
-  arrivals_.push_back(batch.stamp_ns);
-  by_stamp_[batch.stamp_ns] = std::move(batch.detections);
-  while (arrivals_.size() > kMaxStamps) {
-    const std::int64_t first = arrivals_.front();
-    arrivals_.pop_front();
-    if (std::find(arrivals_.begin(), arrivals_.end(), first) == arrivals_.end()) by_stamp_.erase(first);
-  }
+  boxes_.put(batch.stamp_ns, {std::move(batch.detections), in_message});
   arrived_.notify_all();
 }
 
-bool DetectionInbox::wait_for(std::int64_t stamp_ns, const std::function<bool()>& give_up) {
+void DetectionInbox::put(DetectionBatch batch) {
+  const std::size_t all = batch.detections.size();
+  put(std::move(batch), all);
+}
+
+void DetectionInbox::put_masks(std::int64_t stamp_ns, vision::PersonMasks masks) {
+  const std::lock_guard lock(mutex_);
+  masks_.put(stamp_ns, std::move(masks));
+  newest_masks_ns_ = stamp_ns;
+  masks_silent_ = false;
+  arrived_.notify_all();
+}
+
+bool DetectionInbox::wait_for(std::int64_t stamp_ns, const GiveUp& give_up) {
+  return wait([&] { return boxes_.has(stamp_ns); }, give_up);
+}
+
+bool DetectionInbox::wait_for_masks(std::int64_t stamp_ns, const GiveUp& give_up) {
+  const auto decided = [&] { return masks_.has(stamp_ns) || newest_masks_ns_ > stamp_ns || masks_silent_; };
+  const bool in_time = wait(decided, give_up);
+  const std::lock_guard lock(mutex_);
+  if (!in_time) masks_silent_ = true;
+  return masks_.has(stamp_ns);
+}
+
+/// `done` is asked with the mutex locked.
+bool DetectionInbox::wait(const std::function<bool()>& done, const GiveUp& give_up) {
   std::unique_lock lock(mutex_);
-  while (!closed_ && !by_stamp_.contains(stamp_ns)) {
+  while (!closed_ && !done()) {
     arrived_.wait_for(lock, kAskPeriod);
-    if (by_stamp_.contains(stamp_ns)) break;
+    if (done()) break;
     lock.unlock();
     const bool enough = give_up();
     lock.lock();
     if (enough) break;
   }
-  return by_stamp_.contains(stamp_ns);
+  return done();
 }
 
 std::vector<DetectionBatch> DetectionInbox::take_until(std::int64_t stamp_ns) {
   const std::lock_guard lock(mutex_);
-  const auto end = by_stamp_.upper_bound(stamp_ns);
   std::vector<DetectionBatch> taken;
-  for (auto it = by_stamp_.begin(); it != end; ++it) taken.push_back({it->first, std::move(it->second)});
-  by_stamp_.erase(by_stamp_.begin(), end);
+  for (auto& [stamp, boxes] : boxes_.take_until(stamp_ns)) {
+    DetectionBatch& batch = taken.emplace_back(DetectionBatch{stamp, std::move(boxes.detections)});
+    std::optional<vision::PersonMasks> masks = masks_.take(stamp);
+    if (masks && boxes.in_message == batch.detections.size()) batch.masks = std::move(*masks);
+  }
   return taken;
 }
 
 void DetectionInbox::clear() {
   const std::lock_guard lock(mutex_);
-  by_stamp_.clear();
-  arrivals_.clear();
+  boxes_.clear();
+  masks_.clear();
+  newest_masks_ns_ = std::numeric_limits<std::int64_t>::min();
 }
 
 void DetectionInbox::close() {

@@ -27,8 +27,9 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
     detector_beats_.stop();
     ServiceFixture::TearDown();
   }
-  void start(service::Pace pace, bool with_detector) {
-    if (with_detector) detector_beats_.start([this] { say("detector", msg::ServiceState::kReady); });
+  void start(service::Pace pace, bool with_detector, const std::vector<msg::Metric>& detector_metrics = {}) {
+    if (with_detector)
+      detector_beats_.start([=, this] { say("detector", msg::ServiceState::kReady, detector_metrics); });
     ServiceFixture::start(pace);
     if (with_detector) std::this_thread::sleep_for(std::chrono::milliseconds(300));  // it has found the detector
   }
@@ -70,6 +71,16 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
       message.detections.push_back(box);
     }
     boxes_.write(message);
+  }
+  /// Labels of 4 px: 1 on the block of the scene.
+  msg::Image masks_of(std::uint64_t seq) const {
+    msg::Image message{.height = 120, .width = 160, .encoding = "mono8", .step = 160};
+    message.header.stamp = msg::to_time(stamp(seq));
+    cv::Mat labels = cv::Mat::zeros(120, 160, CV_8U);
+    const cv::Rect block = test::MovingScene::block(0, 0);
+    labels(cv::Rect(block.x / 4, block.y / 4, block.width / 4, block.height / 4)).setTo(1);
+    message.data.assign(labels.begin<std::uint8_t>(), labels.end<std::uint8_t>());
+    return message;
   }
   void send_result(std::uint64_t seq, std::uint64_t event_count, std::int64_t latency_ns = 0) {
     msg::TrackingResult result{};

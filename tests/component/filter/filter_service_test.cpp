@@ -111,6 +111,85 @@ TEST_F(FilterServiceTest, waits_for_boxes_that_arrive_late) {
   EXPECT_GT(answers_.at(0)->stage_ms[msg::kStageWaitDetections], 100.0F) << "ms";
 }
 
+TEST_F(FilterServiceTest, waits_for_masks_when_the_detectors_heartbeat_says_that_they_come) {
+  auto masks = bus_->writer(bus::topics::kPersonMasks);
+  start(service::Pace::kAsap, true, {{service::metric::kMasks, 0}});
+  send_boxes(0, true);
+  send_frame(0);
+  EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(300))) << "answered without the masks";
+  masks.write(masks_of(0));
+  ASSERT_TRUE(answers_.wait_count(1));
+  EXPECT_EQ(answers_.at(0)->detection_use, msg::DetectionUse::kExact);
+  EXPECT_EQ(answers_.at(0)->objects, 1U);
+}
+
+TEST_F(FilterServiceTest, waits_for_the_masks_of_a_replay_which_says_nothing_of_them) {
+  start(service::Pace::kLockstep, true);
+  auto masks = bus_->writer(bus::topics::kPersonMasks);
+  for (int i = 0; i < 500 && masks.matched() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  send_boxes(0, true);
+  send_frame(0);
+  EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(300)));
+  masks.write(masks_of(0));
+  ASSERT_TRUE(answers_.wait_count(1));
+  send_result(0, 0);
+  send_boxes(1, true);
+  send_frame(1);
+  masks.write(masks_of(2));  // those of frame 1 are lost
+  EXPECT_TRUE(answers_.wait_count(2)) << "later ones have come";
+}
+
+TEST_F(FilterServiceTest, waits_in_vain_for_masks_only_once) {
+  config_.detections_timeout_ms = 500;
+  start(service::Pace::kAsap, true, {{service::metric::kMasks, 0}});
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    send_boxes(seq, true);
+    send_frame(seq);
+    ASSERT_TRUE(answers_.wait_count(seq + 1));
+    EXPECT_EQ(answers_.at(seq)->detection_use, msg::DetectionUse::kExact);
+  }
+  EXPECT_GT(answers_.at(0)->stage_ms[msg::kStageWaitDetections], 400.0F) << "ms";
+  EXPECT_LT(answers_.at(2)->stage_ms[msg::kStageWaitDetections], 400.0F) << "ms";
+}
+
+TEST_F(FilterServiceTest, does_not_wait_for_masks_that_are_switched_off) {
+  config_.person_masks = "off";
+  start(service::Pace::kAsap, true, {{service::metric::kMasks, 0}});
+  send_boxes(0, true);
+  send_frame(0);
+  EXPECT_TRUE(answers_.wait_count(1, std::chrono::milliseconds(2000)));
+}
+
+TEST_F(FilterServiceTest, never_waits_for_masks_in_realtime) {
+  start(service::Pace::kRealtime, true, {{service::metric::kMasks, 0}});
+  send_boxes(0, true);
+  send_frame(0);
+  EXPECT_TRUE(answers_.wait_count(1, std::chrono::milliseconds(2000)));
+}
+
+TEST_F(FilterServiceTest, broken_masks_leave_the_boxes) {
+  start(service::Pace::kLockstep, true, {{service::metric::kMasks, 0}});
+  auto masks = bus_->writer(bus::topics::kPersonMasks);
+  auto expect_boxes_alone = [&, seq = std::uint64_t{0}](auto spoil) mutable {
+    msg::Image message = masks_of(seq);
+    spoil(message);
+    send_boxes(seq, true);
+    masks.write(message);
+    send_frame(seq);
+    ASSERT_TRUE(answers_.wait_count(seq + 1));
+    EXPECT_EQ(answers_.at(seq)->detection_use, msg::DetectionUse::kExact);
+    EXPECT_EQ(answers_.at(seq)->objects, 1U);
+    send_result(seq, 0);
+    ++seq;
+  };
+  expect_boxes_alone([](msg::Image& message) { message.encoding = "16UC1"; });
+  expect_boxes_alone([](msg::Image& message) { message.data.assign(message.data.size(), 9); });
+  expect_boxes_alone([](msg::Image& message) {
+    message.width = message.step = 80;
+    message.data.resize(std::size_t{80} * 120);
+  });
+}
+
 TEST_F(FilterServiceTest, carries_the_newest_boxes_in_realtime_and_does_not_wait) {
   start(service::Pace::kRealtime, true);
   send_frame(0);

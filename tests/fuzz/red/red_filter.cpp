@@ -6,6 +6,7 @@
 /// filter would publish passes the edge of the next service. The preset asan-ubsan gives it its teeth.
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
@@ -38,7 +39,12 @@ class Target {
     filter_.set_mode(mode);
     movers_.clear();
   }
-  void put(const msg::Detection2DArray& message) { detections_.put(to_detection_batch(message)); }
+  void put(const msg::Detection2DArray& message) {
+    detections_.put(to_detection_batch(message), message.detections.size());
+  }
+  void put(const msg::Image& message) {
+    detections_.put_masks(msg::to_ns(message.header.stamp), to_person_masks(message).masks);
+  }
   void put(const msg::TrackingResult& result) { feedback_.put(result); }
   void put(const msg::KeyframeEvent& event) { feedback_.put(event); }
 
@@ -53,7 +59,8 @@ class Target {
     const vision::RgbdImage image = vision::view_image(frame);
     Extraction extraction = filter_.extract(image);
     apply_feedback();
-    const DetectorUpdate update{detector, detections_.take_until(frame.stamp_ns)};
+    DetectorUpdate update{detector, detections_.take_until(frame.stamp_ns)};
+    drop_misfits(update.batches, frame);
     const FilterResult result = filter_.judge(image, std::move(extraction), update);
     fill_message(frame, result, msg::DetectionUse::kExact, features_);
     mask_ = make_mask(frame, result, "camera");
@@ -103,6 +110,20 @@ msg::Detection2DArray boxes_of(std::uint64_t seq) {
   return boxes;
 }
 
+/// The person of boxes_of() as pixels.
+msg::Image labels_of(std::uint64_t seq) {
+  constexpr auto cells = [](int px) { return static_cast<std::uint32_t>((px - 1) / vision::kMaskStepPx + 1); };
+  msg::Image labels;
+  labels.header = {msg::to_time(SmallFrames::stamp_ns(seq)), "camera"};
+  labels.width = labels.step = cells(SmallFrames::kWidth);
+  labels.height = cells(SmallFrames::kHeight);
+  labels.encoding = "mono8";
+  labels.data.assign(std::size_t{labels.width} * labels.height, 0);
+  const std::uint64_t middle = seq % SmallFrames::kWidth / vision::kMaskStepPx;
+  for (std::uint32_t row = 5; row < labels.height; ++row) labels.data[row * labels.width + middle] = 1;
+  return labels;
+}
+
 msg::TrackingResult result_of(std::uint64_t seq) {
   msg::TrackingResult result{};
   result.seq = seq;
@@ -141,11 +162,13 @@ class Attack {
   /// A frame and what goes with it.
   void step(bool hostile) {
     ++seq_;
+    if (seq_ % 3 != 0) give("masks", labels_of(seq_), hostile);
     give("boxes", boxes_of(seq_), hostile);
     if (seq_ % 10 == 0) give("keyframe event", event_of(seq_ - 1), hostile);
     give("pose", result_of(seq_ - 1), hostile);
     for (std::uint64_t more = hostile ? attacker_.below(6) : 0; more > 0; --more) {
       if (attacker_.one_in(2)) give("boxes", boxes_of(seq_ + attacker_.below(3)), true);
+      if (attacker_.one_in(2)) give("masks", labels_of(seq_ + attacker_.below(3)), true);
       if (attacker_.one_in(2)) give("pose", result_of(seq_ - attacker_.below(40) % seq_), true);
       if (attacker_.one_in(2)) give("keyframe event", event_of(seq_ - attacker_.below(40) % seq_), true);
     }

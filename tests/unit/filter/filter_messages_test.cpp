@@ -47,6 +47,54 @@ TEST(DetectionMessage, takes_the_best_hypothesis_and_the_corner_of_the_box) {
   EXPECT_FLOAT_EQ(converted.detections[0].x_px, 40.0F);
 }
 
+msg::Image labels(std::uint32_t width, std::uint32_t height) {
+  msg::Image message{.height = height, .width = width, .encoding = "mono8", .step = width};
+  message.data.assign(std::size_t{width} * height, 0);
+  return message;
+}
+
+TEST(MasksMessage, becomes_labels) {
+  msg::Image message = labels(160, 120);
+  message.data[161] = 2;
+  const vision::PersonMasks masks = to_person_masks(message).masks;
+  EXPECT_EQ(masks.columns, 160);
+  EXPECT_EQ(masks.rows, 120);
+  EXPECT_EQ(masks.at(1, 1), 2);
+}
+
+TEST(MasksMessage, of_another_encoding_step_or_size_is_refused_with_its_numbers) {
+  const auto expect_refused = [](const msg::Image& message, const char* text) {
+    EXPECT_THAT(to_person_masks(message).problem, HasSubstr(text));
+    EXPECT_TRUE(to_person_masks(message).masks.empty());
+  };
+  msg::Image wide = labels(8, 4), short_of = labels(8, 4), coloured = labels(8, 4);
+  wide.step = 12;
+  short_of.data.pop_back();
+  coloured.encoding = "bgr8";
+  expect_refused(wide, "step 12");
+  expect_refused(short_of, "31 bytes");
+  expect_refused(coloured, "'bgr8'");
+}
+
+TEST(MasksMessage, must_fit_the_frame_and_its_boxes) {
+  msg::FrameView frame{};
+  frame.width = 637;
+  frame.height = 480;
+  const auto problem_of = [&](std::uint32_t columns, std::uint32_t rows, std::uint8_t label) {
+    std::vector<DetectionBatch> batches = {
+        {1, {{"person", 0.9F, 0, 0, 9, 9}}, to_person_masks(labels(columns, rows)).masks}};
+    batches[0].masks.labels[0] = label;
+    const std::string problem = drop_misfits(batches, frame);
+    EXPECT_EQ(batches[0].masks.empty(), !problem.empty());
+    return problem;
+  };
+  EXPECT_EQ(problem_of(160, 120, 1), "");
+  EXPECT_EQ(problem_of(160, 120, 2), "label 2 of 1 detections");
+  EXPECT_EQ(problem_of(80, 60, 1), "80x60 labels where the frame has 160x120");
+  std::vector<DetectionBatch> without(1);
+  EXPECT_EQ(drop_misfits(without, frame), "");
+}
+
 TEST(DetectionMessage, leaves_out_invalid_boxes) {
   msg::Detection2DArray message;
   message.detections = {box(std::nan(""), 20, 0.8), box(50, 0, 0.8), box(50, -3, 0.8),

@@ -58,6 +58,58 @@ TEST(DetectionInbox, is_not_blocked_by_stamps_of_the_far_future) {
   EXPECT_EQ(inbox.take_until(100).size(), 1U);
 }
 
+vision::PersonMasks mask() {
+  return {2, 1, {0, 1}};
+}
+
+TEST(DetectionInbox, pairs_masks_with_the_boxes_of_the_same_stamp) {
+  DetectionInbox inbox;
+  inbox.put_masks(100, mask());
+  inbox.put_masks(150, mask());
+  EXPECT_TRUE(inbox.take_until(170).empty()) << "no boxes yet";
+  inbox.put({100, {person(1)}});
+  inbox.put({200, {person(2)}});
+  const auto taken = inbox.take_until(200);
+  ASSERT_EQ(taken.size(), 2U);
+  EXPECT_EQ(taken[0].masks.labels, mask().labels) << "boxes may be late";
+  EXPECT_TRUE(taken[1].masks.empty());
+}
+
+TEST(DetectionInbox, masks_that_come_after_their_boxes_were_taken_are_ignored) {
+  DetectionInbox inbox;
+  inbox.put({100, {person(1)}});
+  EXPECT_TRUE(inbox.take_until(100).at(0).masks.empty());
+  inbox.put_masks(100, mask());
+  EXPECT_TRUE(inbox.take_until(1000).empty());
+}
+
+TEST(DetectionInbox, boxes_that_were_left_out_leave_the_masks_without_meaning) {
+  DetectionInbox inbox;
+  inbox.put_masks(100, mask());
+  inbox.put({100, {person(1)}}, 2);
+  EXPECT_TRUE(inbox.take_until(100).at(0).masks.empty());
+}
+
+TEST(DetectionInbox, waits_for_masks_of_this_stamp_but_not_for_those_that_were_passed_over) {
+  DetectionInbox inbox;
+  auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for_masks(100, never); });
+  inbox.put_masks(99, mask());
+  inbox.put_masks(100, mask());
+  EXPECT_TRUE(waiting.get());
+  inbox.put_masks(300, mask());
+  EXPECT_FALSE(inbox.wait_for_masks(200, never)) << "one writer sends in order";
+}
+
+TEST(DetectionInbox, after_a_wait_for_masks_in_vain_it_waits_again_when_they_come) {
+  DetectionInbox inbox;
+  EXPECT_FALSE(inbox.wait_for_masks(100, at_once));
+  EXPECT_FALSE(inbox.wait_for_masks(200, never));
+  inbox.put_masks(100, mask());
+  auto waiting = std::async(std::launch::async, [&] { return inbox.wait_for_masks(300, never); });
+  inbox.put_masks(300, mask());
+  EXPECT_TRUE(waiting.get());
+}
+
 msg::TrackingResult result(std::uint64_t seq, std::uint64_t event_count) {
   msg::TrackingResult result{};
   result.seq = seq;
