@@ -241,7 +241,7 @@ std::uint64_t map_until_old(SlamSystem& slam, const FeatureWorld& world) {
   return seq;
 }
 
-TEST(SlamSystem, odometry_goes_on_beside_an_old_map_and_joins_it_again) {
+TEST(SlamSystem, odometry_continues_beside_an_old_map_and_joins_it_again) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam_that_maps_densely(3);
   constexpr std::uint64_t kLost = 15;

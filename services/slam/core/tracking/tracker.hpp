@@ -46,7 +46,7 @@ struct TrackOutcome {
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
-  /// Odometry goes on beside the map, which is old and does not change. At the first frame after it: where odometry
+  /// Odometry continues beside the map, which is old and does not change. At the first frame after it: where odometry
   /// expects that frame.
   bool apart = false;
   std::optional<Eigen::Isometry3d> T_world_expected;
