@@ -19,6 +19,7 @@
 #include "common/service/pacer.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
+#include "services/camera/core/left_out.hpp"
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/frame_publisher.hpp"
 
@@ -120,6 +121,7 @@ class CameraService {
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;
+  LeftOut left_out_;
   DepthOffsets depth_offsets_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;

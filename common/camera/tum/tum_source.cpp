@@ -147,6 +147,7 @@ PairList read_pairs(const fs::path& folder, std::int64_t tolerance_ns) {
   sort_unique(depth);
   const std::vector<geometry::StampPair> found =
       geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), tolerance_ns);
+  list.depth_alone = depth.size() - found.size();
   auto pair = found.begin();
   for (std::size_t i = 0; i < color.size(); ++i) {
     if (pair != found.end() && pair->first == i) {
@@ -166,6 +167,7 @@ TumSource::TumSource(std::string uri, std::filesystem::path folder, Options opti
   const Calibration calibration = load_calibration(folder_);
   pairs_ = std::move(list.pairs);
   for (SkippedInput& input : list.skipped) skips_.add(std::move(input));
+  skips_.counters().depth_alone = list.depth_alone;
   groundtruth_ = read_groundtruth(folder_, pairs_);
   info_.uri = std::move(uri);
   info_.fps = calibration.fps;

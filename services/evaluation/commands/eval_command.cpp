@@ -14,6 +14,7 @@
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
@@ -41,10 +42,13 @@ std::string rpe_rows(const std::string& name, const RpeResult& rpe) {
 }
 
 std::string coverage_rows(const Coverage& coverage, std::int64_t start_ns) {
-  std::string text = coverage.frames > 0 ? fmt::format("coverage               {:.2f} % ({} of {} frames)\n",
-                                                       100 * coverage.fraction, coverage.tracked, coverage.frames)
-                                         : fmt::format("coverage               {:.2f} % of the ground truth's time\n",
-                                                       100 * coverage.fraction);
+  std::string text =
+      coverage.frames > 0
+          ? fmt::format("coverage               {:.2f} % ({} of {} frames)\n", 100 * coverage.fraction,
+                        coverage.tracked, coverage.frames)
+          : fmt::format(
+                "time with poses        {:.2f} % of the ground truth's (--frames LIST: coverage of the frames)\n",
+                100 * coverage.fraction);
   for (std::size_t i = 0; i < std::min(coverage.lost.size(), kShownSpans); ++i) {
     const LostSpan& span = coverage.lost[i];
     text += fmt::format("  without poses        {:.2f} s to {:.2f} s after the start",
@@ -76,8 +80,33 @@ struct Inputs {
   Trajectory estimate, groundtruth;
   std::vector<PublishedPose> published;  ///< of the estimate, where states are known
   std::optional<std::vector<std::int64_t>> frames_ns;
+  std::size_t frames_given = 0;  ///< frames of the source, of which frames_ns may be a part
   std::vector<std::string> damages;
 };
+
+/// The frames of the run that wrote the estimate: its folder has run.json.
+void take_frames_of_run(const std::filesystem::path& folder, Inputs& inputs) {
+  const std::filesystem::path file = folder / "run.json";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  try {
+    const run_record::RunRecord record = run_record::read_run_json(file);
+    std::vector<std::int64_t> stamps_ns;
+    for (const run_record::FrameRecord& frame : record.frames) stamps_ns.push_back(frame.tracking.stamp_ns);
+    if (!std::ranges::is_sorted(stamps_ns)) return;
+    inputs.frames_ns = std::move(stamps_ns);
+    inputs.frames_given = run_record::frame_use(record).given;
+  } catch (const run_record::RunFileError&) {
+    // of another version, or not of a run: coverage is by time then
+  }
+}
+
+/// Coverage counts all frames of the source.
+void count_given(const Inputs& inputs, Coverage& coverage) {
+  if (!inputs.frames_ns || inputs.frames_given <= coverage.frames) return;
+  coverage.frames = inputs.frames_given;
+  coverage.fraction = static_cast<double>(coverage.tracked) / static_cast<double>(coverage.frames);
+}
 
 Inputs read_inputs(const EvalOptions& options) {
   PoseFile estimate = read_pose_file(options.estimate, options.stamps);
@@ -85,14 +114,15 @@ Inputs read_inputs(const EvalOptions& options) {
   const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
   if (given && !estimate.took_stamps && !groundtruth.took_stamps)
     throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
-  Inputs inputs{std::move(estimate.poses),
-                std::move(groundtruth.poses),
-                std::move(estimate.published),
-                {},
+  Inputs inputs{std::move(estimate.poses),  std::move(groundtruth.poses), std::move(estimate.published), {}, 0,
                 std::move(estimate.damages)};
   for (PublishedPose& pose : inputs.published) pose.stamp_ns += std::llround(options.offset_s * 1e9);
   std::ranges::move(groundtruth.damages, std::back_inserter(inputs.damages));
-  if (!options.frames.empty()) inputs.frames_ns = read_frame_stamps(options.frames);
+  if (!options.frames.empty()) {
+    inputs.frames_ns = read_frame_stamps(options.frames);
+  } else {
+    take_frames_of_run(std::filesystem::path(options.estimate).parent_path(), inputs);
+  }
   return inputs;
 }
 
@@ -192,8 +222,9 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
   return guarded("rtd eval", err, [&] {
     const Inputs inputs = read_inputs(options);
-    const Evaluation evaluation =
+    Evaluation evaluation =
         evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
+    count_given(inputs, evaluation.coverage);
     if (evaluation.ate.error_m.count == 0) {
       err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
       return service::kRunFailed;

@@ -136,6 +136,11 @@ bool Collector::tracked_any() const {
   return builder_.tracked_any();
 }
 
+std::string Collector::camera_message() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.camera_message();
+}
+
 void Collector::close() {
   const std::lock_guard lock(mutex_);
   builder_.close();

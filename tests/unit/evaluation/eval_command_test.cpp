@@ -8,7 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/unit/evaluation/eval_paths.hpp"
+#include "services/evaluation/core/report/run_summary.hpp"
+#include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
@@ -131,6 +132,24 @@ TEST_F(EvalCommand, frame_list_gives_the_coverage_of_frames) {
   EXPECT_EQ(json["coverage"]["frames"], 60);
   EXPECT_EQ(json["coverage"]["tracked"], 50);
   EXPECT_EQ(json["coverage"]["lost_spans"][0]["frames"], 10);
+}
+
+TEST_F(EvalCommand, coverage_of_a_run_is_that_of_its_report) {
+  eval::Run run_of_folder = testing_support::fabricated_run();  // 94 of 100 frames have a pose
+  run_of_folder.frames_left_out = 88;
+  run_record::write_run_json(run_of_folder, folder_.file("run.json"));
+  const std::string truth = folder_.write("truth.txt", tum_text(winding_path(100, 0.1)));
+  const std::string estimate = folder_.write("trajectory.txt", tum_text(online_trajectory(run_of_folder)));
+  const auto json = nlohmann::json::parse(run({estimate, truth, "--json"}).out);
+  EXPECT_EQ(json["coverage"]["of"], "frames");
+  EXPECT_EQ(json["coverage"]["frames"], 188);
+  EXPECT_DOUBLE_EQ(json["coverage"]["fraction"], summarize_run(run_of_folder).coverage);
+  EXPECT_THAT(run({estimate, truth}).out, HasSubstr("coverage               50.00 % (94 of 188 frames)"));
+}
+
+TEST_F(EvalCommand, without_frames_the_share_of_time_is_not_called_coverage) {
+  EXPECT_THAT(run({estimate_, truth_}).out,
+              AllOf(HasSubstr("time with poses        81.36 % of the ground truth's"), Not(HasSubstr("coverage   "))));
 }
 
 TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {
