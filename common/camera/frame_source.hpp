@@ -114,7 +114,8 @@ struct SourceInfo {
   double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
   double depth_offset_s = 0;
-  bool has_imu = false, has_wheels = false;                         ///< frames come with what they measured
+  std::vector<std::string> notes = {};       ///< what people should know of its data: a ground truth that is not used
+  bool has_imu = false, has_wheels = false;  ///< frames come with what they measured
   Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
 };
 

@@ -100,7 +100,7 @@ struct RunRecord {
 struct FrameUse {
   std::uint64_t given = 0;      ///< the source had them, whether it could deliver them or not
   std::uint64_t used = 0;       ///< slam got them, with a depth that it may use, and answered
-  std::uint64_t with_pose = 0;  ///< in state ok or doubtful
+  std::uint64_t with_pose = 0;  ///< a measured one: ok, doubtful or odometry
 
   /// Frames with pose / frames given, in [0, 1]; NaN without frames.
   double coverage() const;

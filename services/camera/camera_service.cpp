@@ -129,6 +129,7 @@ CameraService::Outcome CameraService::open() {
   }
   if (source_->info().live) open_publisher();
   left_out_.open(source_->info().frames, static_cast<std::uint64_t>(config_.frames), source_->counters());
+  for (const std::string& note : source_->info().notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
   const auto& camera = source_->info().camera.parameters();
   SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
               source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);

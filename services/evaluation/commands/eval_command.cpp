@@ -80,9 +80,35 @@ struct Inputs {
   Trajectory estimate, groundtruth;
   std::vector<PublishedPose> published;  ///< of the estimate, where states are known
   std::optional<std::vector<std::int64_t>> frames_ns;
-  std::size_t frames_given = 0;  ///< frames of the source, of which frames_ns may be a part
+  std::size_t frames_given = 0;    ///< frames of the source, of which frames_ns may be a part
+  std::vector<std::string> notes;  ///< nothing was lost
   std::vector<std::string> damages;
 };
+
+void require_stamps_where_given(const EvalOptions& options, const PoseFile& estimate, const PoseFile& groundtruth) {
+  const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
+  if (given && !estimate.took_stamps && !groundtruth.took_stamps)
+    throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
+}
+
+/// Poses without stamps belong to those of the same number in the other file, whose stamps they take.
+void pair_by_number(const EvalOptions& options, PoseFile& estimate, PoseFile& groundtruth,
+                    std::vector<std::string>& notes) {
+  if (!estimate.numbered && !groundtruth.numbered) return;
+  const std::size_t poses = estimate.poses.size();
+  if (poses != groundtruth.poses.size()) {
+    throw TrajectoryError(fmt::format(
+        "{}: 12 numbers a line have no stamps, and {} poses cannot be those of the {} in the other file; give --times "
+        "FILE (a stamp in seconds a line, as times.txt of the sequence) or --rate HZ",
+        estimate.numbered ? options.estimate : options.groundtruth, poses, groundtruth.poses.size()));
+  }
+  Trajectory& without = estimate.numbered ? estimate.poses : groundtruth.poses;
+  const Trajectory& with = estimate.numbered ? groundtruth.poses : estimate.poses;
+  for (std::size_t i = 0; i < poses; ++i) without[i].stamp_ns = with[i].stamp_ns;
+  notes.push_back(estimate.numbered && groundtruth.numbered
+                      ? fmt::format("no stamps: pose i belongs to pose i, at {:g} Hz (--rate HZ)", kNumberedHz)
+                      : "one file has no stamps: pose i belongs to pose i of the other");
+}
 
 /// The frames of the run that wrote the estimate: its folder has run.json.
 void take_frames_of_run(const std::filesystem::path& folder, Inputs& inputs) {
@@ -111,13 +137,17 @@ void count_given(const Inputs& inputs, Coverage& coverage) {
 Inputs read_inputs(const EvalOptions& options) {
   PoseFile estimate = read_pose_file(options.estimate, options.stamps);
   PoseFile groundtruth = read_pose_file(options.groundtruth, options.stamps);
-  const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
-  if (given && !estimate.took_stamps && !groundtruth.took_stamps)
-    throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
-  Inputs inputs{std::move(estimate.poses),  std::move(groundtruth.poses), std::move(estimate.published), {}, 0,
-                std::move(estimate.damages)};
+  require_stamps_where_given(options, estimate, groundtruth);
+  Inputs inputs;
+  pair_by_number(options, estimate, groundtruth, inputs.notes);
+  inputs.estimate = std::move(estimate.poses);
+  inputs.groundtruth = std::move(groundtruth.poses);
+  inputs.published = std::move(estimate.published);
+  for (PoseFile* file : {&estimate, &groundtruth}) {
+    std::ranges::move(file->notes, std::back_inserter(inputs.notes));
+    std::ranges::move(file->damages, std::back_inserter(inputs.damages));
+  }
   for (PublishedPose& pose : inputs.published) pose.stamp_ns += std::llround(options.offset_s * 1e9);
-  std::ranges::move(groundtruth.damages, std::back_inserter(inputs.damages));
   if (!options.frames.empty()) {
     inputs.frames_ns = read_frame_stamps(options.frames);
   } else {
@@ -231,6 +261,9 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     out << text_of(evaluation, integrity_of(inputs), options);
+    if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))
+      err << "rtd eval: note: " << *unit << '\n';
+    for (const std::string& note : inputs.notes) err << "rtd eval: note: " << note << '\n';
     for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
     return inputs.damages.empty() ? service::kOk : service::kPartialLoss;
   });

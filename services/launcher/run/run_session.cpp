@@ -56,6 +56,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   require_free_domain();
   clear_out_dir(setup_);
+  for (const std::string& text : setup_.source_notes) note(text);
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
   supervise(plans.back());

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
@@ -78,14 +79,18 @@ void choose_vendors(RunSetup& setup) {
   }
 }
 
-std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
-  if (camera::is_live(uri)) {
-    camera::check_live_uri(uri);
-    return limit;
+/// Opens a source that is no running camera, for its length and its notes.
+void look_at_source(RunSetup& setup) {
+  if (camera::is_live(setup.source)) {
+    camera::check_live_uri(setup.source);
+    setup.total_frames = setup.frames;
+    return;
   }
-  const std::uint64_t frames = camera::make_source(uri)->info().frames;
-  if (limit == 0) return frames;
-  return frames == 0 ? limit : std::min(frames, limit);
+  const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
+  setup.source_notes = source->info().notes;
+  setup.total_frames = source->info().frames;
+  if (setup.frames > 0)
+    setup.total_frames = setup.total_frames == 0 ? setup.frames : std::min(setup.total_frames, setup.frames);
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.
@@ -195,6 +200,18 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
   return arguments;
 }
 
+/// trajectory_map_1.txt, trajectory_segment_2.txt, ...
+std::vector<fs::path> more_trajectories(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    const bool ours = name.starts_with("trajectory_map_") || name.starts_with("trajectory_segment_");
+    if (ours && name.ends_with(".txt")) files.push_back(entry.path());
+  }
+  return files;
+}
+
 void check_trace_file(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw ConfigError("--trace " + path + ": this is a folder: name a file in it");
@@ -232,7 +249,11 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.replay = choose_replay(setup, setup.bus_options.robot);
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
-  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
+  if (setup.replay) {
+    setup.total_frames = setup.replay.frames;
+  } else {
+    look_at_source(setup);
+  }
   choose_detector(setup);
   choose_map(setup);
   process::make_out_folder(setup.out_dir);
@@ -250,6 +271,9 @@ void clear_out_dir(const RunSetup& setup) {
                       fs::equivalent(setup.services.map.load, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
+  for (const fs::path& file : more_trajectories(out_dir)) {
+    if (!error) fs::remove(file, error);
+  }
   for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
                            "static_map.ply", "map.pgm", "map.yaml", "map.bt", "background.png", "groundtruth.txt",
                            "run.json", "report.json", "report.html"}) {

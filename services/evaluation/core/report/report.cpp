@@ -178,6 +178,9 @@ void judge_run(Run& run, const std::function<bool()>& go_on) {
 }
 
 void choose_trajectory(Run& run, const std::string& folder) {
+  if (!existing(folder + "/trajectory_segment_2.txt").empty())
+    run.events.emplace_back(
+        "stamps went back: trajectory.txt has the poses before, trajectory_segment_2.txt those after");
   if (!run.trajectory_path.empty() || run.frames.empty()) return;
   run.trajectory_path = folder + "/trajectory_online.txt";
   run.events.emplace_back("slam left no trajectory.txt: judged by the poses as they were published");

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/evaluation/core/report/scene_depth.hpp"
 
@@ -89,7 +90,9 @@ Trajectory read_or_note(const std::string& what, const std::string& path, std::v
     return {};
   }
   try {
-    return read_tum_trajectory(std::filesystem::path(path));
+    geometry::PoseList list = geometry::read_pose_list(std::filesystem::path(path));
+    for (auto* lines : {&list.notes, &list.damages}) std::ranges::move(*lines, std::back_inserter(notes));
+    return std::move(list.poses);
   } catch (const TrajectoryError& error) {
     notes.push_back(what + " unusable: " + error.what());
     return {};
@@ -189,6 +192,7 @@ RunSummary summarize_run(const Run& run) {
   summary.online_trajectory =
       evaluate_or_note("published poses", online_trajectory(run), summary.groundtruth, summary.notes);
   note_lost_part(run, summary);
+  if (auto unit = other_unit(summary.estimate, summary.groundtruth)) summary.notes.push_back(std::move(*unit));
   summary.integrity = integrity_of(run, summary);
   const Drift* drift = drift_of(summary);
   if (drift != nullptr && drift->nearly_constant()) summary.scene_depth_m = scene_depth_m(run.source);
