@@ -17,6 +17,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/left_out.hpp"
@@ -36,7 +37,7 @@ struct ServiceConfig {
   int jpeg_quality = 90;
   int asap_window = 3;
   int resend_after_ms = 2000;
-  double result_timeout_s = 30;
+  double result_timeout_s = 1e-3 * service::kEveryFramePatience.result_ms;
   double start_timeout_s = 30;
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};

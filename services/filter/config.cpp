@@ -12,9 +12,9 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   service::bind_filter_mode(binder, mode);
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector if one runs; off: never wait, never use");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
-               "asap, lockstep: longest wait for the boxes of one frame");
+               "asap, lockstep: longest wait for a living detector's boxes of one frame");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000},
-               "lockstep: longest wait for slam's result of the previous frame");
+               "lockstep: longest wait for a living slam's result of the previous frame");
   binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
   binder.field("map_frame", map_frame, "frame of rt/filter/movers: as slam.map_frame");
   core.bind(binder);

@@ -10,9 +10,12 @@
 #include <memory>
 #include <optional>
 
+#include "common/camera/device_uri.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/services.hpp"
@@ -40,6 +43,23 @@ void check_sections(const std::vector<std::string>& overrides) {
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
+}
+
+/// A camera, a scene without an end, and a detector that serves at its own pace do not wait. Of what is stored every
+/// frame is played, with the same result each time.
+const char* usual_pace(const RunSetup& setup) {
+  if (setup.detector == "remote") return "realtime";
+  if (camera::is_device(setup.source)) return camera::parse_device_uri(setup.source).recorded ? "lockstep" : "realtime";
+  if (camera::is_live(setup.source)) return "realtime";
+  if (!camera::is_of_kind(setup.source, camera::SourceKind::kScene) || setup.frames > 0) return "lockstep";
+  const camera::SyntheticOptions scene = camera::parse_synthetic_options(camera::parse_source_uri(setup.source));
+  return scene.frames == 0 ? "realtime" : "lockstep";
+}
+
+void choose_pace(RunSetup& setup) {
+  const service::Pace pace = service::parse_pace(setup.pace.empty() ? usual_pace(setup) : setup.pace);
+  setup.pace = service::to_string(pace);
+  setup.launcher.hung_after_ms = service::patience_of(pace).silent_ms;
 }
 
 /// The launcher reads its own sections; the services check theirs when they start.
@@ -242,10 +262,10 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
 
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup(options);
+  setup.source = camera::complete_uri(setup.source);
+  choose_pace(setup);
   load_config(setup);
   choose_vendors(setup);
-  setup.pace = service::to_string(service::parse_pace(setup.pace));
-  setup.source = camera::complete_uri(setup.source);
   setup.replay = choose_replay(setup, setup.bus_options.robot);
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
