@@ -59,7 +59,9 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   for (const std::string& text : setup_.source_notes) note(text);
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
-  supervise(plans.back());
+  ServicePlan camera = plans.back();
+  camera.has_served = [this] { return collector_.any_frame(); };
+  supervise(camera);
   terminal_.end_status();
   return supervisor_.outcome();
 }

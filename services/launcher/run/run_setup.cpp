@@ -25,6 +25,7 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/pacer.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -99,10 +100,20 @@ void choose_vendors(RunSetup& setup) {
   }
 }
 
+/// No one plugs a camera in because a run waits for it. Cameras of the network may still announce themselves.
+void require_local_camera(const std::string& source) {
+  if (!camera::is_device(source)) return;
+  const camera::DeviceUri uri = camera::parse_device_uri(source);
+  if (uri.scheme != "openni2" || uri.recorded) return;
+  const std::string why = why_no_camera(uri.device, camera::find_openni2_cameras());
+  if (!why.empty()) throw ConfigError(why);
+}
+
 /// Opens a source that is no running camera, for its length and its notes.
 void look_at_source(RunSetup& setup) {
   if (camera::is_live(setup.source)) {
     camera::check_live_uri(setup.source);
+    require_local_camera(setup.source);
     setup.total_frames = setup.frames;
     return;
   }
