@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/frame_source.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -10,16 +11,57 @@
 
 namespace rtd::camera {
 
+namespace {
+
+struct SkipText {
+  const char* name;
+  const char* explanation;
+};
+
+constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
+    {"malformed_line", "lines of the list are not 'stamp file': correct them, or leave them out with '#'"},
+    {"no_depth_partner",
+     "no depth image has the time of the colour image: compare the stamps of both, or allow more with ?tolerance_ms="},
+    {"stamp_backwards",
+     "stamps are older than those before: they are not the times of the frames, or it was recorded twice; give each "
+     "frame its time in seconds (its number / the rate is enough)"},
+    {"stamp_doubled",
+     "stamps are the same as those before: the driver does not fill header.stamp, or the list repeats them; give each "
+     "frame a time of its own"},
+    {"color_unreadable", "colour images are missing, cut or no images: copy the files again"},
+    {"depth_unreadable", "depth images are missing, cut or no images: copy the files again"},
+    {"depth_not_16_bit", "depth images are not of 16 bits and one channel: write them so, 0 for no measurement"},
+    {"size_mismatch",
+     "the sizes of colour, depth and calibration differ: record in one mode of the camera, and give the calibration of "
+     "that mode"},
+    {"damaged_record", "the recording is damaged: 'rtd record recover FILE' saves what can be read"},
+    {"overrun", "images came faster than they were taken: choose a lower rate or size of the camera"},
+    {"color_frozen", "the colour image did not change for a second: unplug the camera and plug it in again"},
+}};
+
+}  // namespace
+
 const char* to_string(SkipReason reason) {
-  static constexpr std::array<const char*, kSkipReasons> kNames = {
-      "malformed_line",   "no_depth_partner", "stamp_backwards",  "stamp_doubled",
-      "color_unreadable", "depth_unreadable", "depth_not_16_bit", "size_mismatch",
-      "damaged_record",   "overrun",          "color_frozen"};
-  return kNames.at(static_cast<std::size_t>(reason));
+  return kSkipTexts.at(static_cast<std::size_t>(reason)).name;
+}
+
+const char* explain(SkipReason reason) {
+  return kSkipTexts.at(static_cast<std::size_t>(reason)).explanation;
+}
+
+std::optional<SkipReason> skip_reason_of(std::string_view name) {
+  for (std::size_t i = 0; i < kSkipReasons; ++i)
+    if (kSkipTexts.at(i).name == name) return static_cast<SkipReason>(i);
+  return std::nullopt;
 }
 
 std::uint64_t SourceCounters::skipped_total() const {
   return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
+}
+
+std::uint64_t SourceCounters::frames_left_out() const {
+  const std::uint64_t alone = of(SkipReason::kNoDepthPartner);
+  return skipped_total() - alone + std::min(alone, depth_alone);
 }
 
 void SkipLog::add(SkippedInput input) {
@@ -39,7 +81,8 @@ std::string SkipLog::summary() const {
     if (counters_.skipped[i] == 0) continue;
     text += ' ' + std::to_string(counters_.skipped[i]) + " x " + to_string(static_cast<SkipReason>(i)) + ',';
   }
-  return text + " first: " + skipped_.front().detail;
+  const auto most = std::ranges::max_element(counters_.skipped) - counters_.skipped.begin();
+  return text + " first: " + skipped_.front().detail + "; " + explain(static_cast<SkipReason>(most));
 }
 
 std::optional<SourceFrame> PlayedSource::next() {

@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -41,6 +42,10 @@ inline constexpr std::size_t kSkipReasons = 11;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);
+/// What is wrong with such frames and what helps: "their stamps are older than ...: give each frame its time".
+const char* explain(SkipReason reason);
+/// The reason of that name; empty for another text.
+std::optional<SkipReason> skip_reason_of(std::string_view name);
 
 /// One piece of input that was left out, with a line for people that names file and cause.
 struct SkippedInput {
@@ -54,7 +59,11 @@ struct SourceCounters {
   std::array<std::uint64_t, kSkipReasons> skipped{};  ///< by SkipReason
   std::uint64_t frames_without_depth = 0;             ///< handed out although no pixel has a measurement
   std::uint64_t reconnects = 0;                       ///< running camera: it was opened again
+  std::uint64_t depth_alone = 0;                      ///< depth images that no colour image was found for
   std::uint64_t skipped_total() const;
+  /// Frames that the source had and did not hand out. Colour images without depth count as far as depth images were
+  /// left over: where depth comes at half the rate of colour, every second colour image is none.
+  std::uint64_t frames_left_out() const;
   std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
 };
 
@@ -105,7 +114,8 @@ struct SourceInfo {
   double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
   double depth_offset_s = 0;
-  bool has_imu = false, has_wheels = false;                         ///< frames come with what they measured
+  std::vector<std::string> notes = {};       ///< what people should know of its data: a ground truth that is not used
+  bool has_imu = false, has_wheels = false;  ///< frames come with what they measured
   Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
 };
 

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/stamps.hpp"
 
@@ -96,6 +97,15 @@ void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
   trajectory.push_back(pose);
 }
 
+std::vector<Trajectory> split_where_time_goes_back(const Trajectory& poses) {
+  std::vector<Trajectory> segments(1);
+  for (const StampedPose& pose : poses) {
+    if (!segments.back().empty() && pose.stamp_ns < segments.back().back().stamp_ns) segments.emplace_back();
+    segments.back().push_back(pose);
+  }
+  return segments;
+}
+
 std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, std::int64_t stamp_ns, std::int64_t max_gap_ns) {
   const auto after = std::ranges::lower_bound(trajectory, stamp_ns, {}, &StampedPose::stamp_ns);
   if (after == trajectory.end()) return std::nullopt;
@@ -164,7 +174,7 @@ std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path) {
   std::vector<std::int64_t> stamps_ns;
   for (const io::TextLine& line : lines_of(input)) {
     try {
-      stamps_ns.push_back(io::parse_stamp_ns(line.fields[0]));
+      stamps_ns.push_back(io::parse_stamp_ns(stamp_in_name(line.fields[0])));
     } catch (const std::invalid_argument& error) {
       fail(path.string(), line.number, error.what());
     }

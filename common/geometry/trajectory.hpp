@@ -59,6 +59,9 @@ Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Qua
 /// goes back.
 void append_in_order(Trajectory& trajectory, const StampedPose& pose);
 
+/// The parts in which stamps never go back, in their order: a recording that is played twice gives two. At least one.
+std::vector<Trajectory> split_where_time_goes_back(const Trajectory& poses);
+
 /// What a reader makes of the rows of a trajectory.
 enum class TumRows {
   kIncreasing,  ///< a repeated stamp replaces the row before it, as in TUM's tools; going back or no row is an error
@@ -73,7 +76,8 @@ Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows =
 /// As above from a stream; `name` stands for the file in messages.
 Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows = TumRows::kIncreasing);
 
-/// Reads the stamps (first column) of a frame list such as rgb.txt or associations.txt. Throws TrajectoryError.
+/// Reads the stamps (first column) of a frame list such as rgb.txt or associations.txt; of a list of names only
+/// ("rgb/12.5.png") they are in the names. Throws TrajectoryError.
 std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path);
 
 /// How a trajectory is written: "%.6f" for stamps, "%.9f" for values in both.

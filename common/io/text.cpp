@@ -62,6 +62,8 @@ int edit_distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::vector<TextLine> split_lines(std::string_view text, std::string_view separators) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<TextLine> lines;
   for (int number = 1; !text.empty(); ++number) {
     const std::string_view line = text.substr(0, text.find('\n'));

@@ -18,7 +18,7 @@ struct TextLine {
   std::vector<std::string> fields;
 };
 
-/// Splits a text into lines and fields; '#' starts a comment.
+/// Splits a text into lines and fields; '#' starts a comment, a byte order mark at the beginning is passed over.
 std::vector<TextLine> split_lines(std::string_view text, std::string_view separators = " \t\r\v\f");
 
 /// The whole content of a file; empty when it cannot be read.

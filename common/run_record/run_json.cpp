@@ -113,8 +113,11 @@ Json record_json(const RunRecord& record) {
             {"interrupted", record.interrupted},
             {"duration_s", to_value(record.duration_s)},
             {"frames_in", record.frames_in},
+            {"frames_left_out", record.frames_left_out},
+            {"frames_out_of_range", record.frames_out_of_range},
             {"frames_dropped", record.frames_dropped},
             {"drops", Json::object()},
+            {"left_out", Json::object()},
             {"processes", processes_json(record.processes)},
             {"clocks", Json::array()},
             {"events", record.events},
@@ -122,6 +125,7 @@ Json record_json(const RunRecord& record) {
             {"samples", Json::array()},
             {"judged_frames", Json::array()}};
   for (const auto& [place, count] : record.drops) json["drops"][place] = to_value(count);
+  for (const auto& [reason, count] : record.left_out) json["left_out"][reason] = to_value(count);
   for (const HostClock& clock : record.clocks) {
     json["clocks"].push_back({{"service", clock.service},
                               {"offset_ms", to_value(clock.offset_ms)},
@@ -139,6 +143,8 @@ Json record_json(const RunRecord& record) {
 
 void read_lists(const Json& json, RunRecord& record) {
   for (const auto& [place, count] : json.at("drops").items()) from_value(count, record.drops[place]);
+  for (const auto& [reason, count] : json.value("left_out", Json::object()).items())
+    from_value(count, record.left_out[reason]);
   for (const auto& [name, usage] : json.at("processes").items()) {
     ProcessUsage& process = record.processes[name];
     from_value(usage.at("cpu_s"), process.cpu_s);
@@ -177,6 +183,8 @@ RunRecord read_record(const Json& json) {
   from_value(json.at("duration_s"), record.duration_s);
   json.at("frames_in").get_to(record.frames_in);
   json.at("frames_dropped").get_to(record.frames_dropped);
+  record.frames_left_out = json.value("frames_left_out", std::uint64_t{0});  // earlier versions did not write them
+  record.frames_out_of_range = json.value("frames_out_of_range", std::uint64_t{0});
   json.at("events").get_to(record.events);
   record.frames = read_frames(json.at("frames"));
   read_lists(json, record);

@@ -4,6 +4,8 @@
 
 #include <openssl/evp.h>
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -18,6 +20,26 @@ std::vector<JudgedFeature> judged(std::span<const msg::Feature> features) {
     result.push_back({f.u_raw_px, f.v_raw_px, (f.flags & msg::kFeatureRemoved) != 0});
   }
   return result;
+}
+
+double FrameUse::coverage() const {
+  if (given == 0) return std::numeric_limits<double>::quiet_NaN();
+  return static_cast<double>(with_pose) / static_cast<double>(given);
+}
+
+std::string FrameUse::text() const {
+  return std::to_string(given) + " given, " + std::to_string(used) + " used, " + std::to_string(with_pose) +
+         " with pose";
+}
+
+FrameUse frame_use(const RunRecord& record) {
+  FrameUse use;
+  use.given = record.frames_in + record.frames_left_out;
+  use.with_pose = static_cast<std::uint64_t>(std::ranges::count_if(
+      record.frames, [](const FrameRecord& frame) { return msg::is_measured(frame.tracking.state); }));
+  const std::uint64_t lost = std::max(record.frames_dropped, record.frames_out_of_range);
+  use.used = std::max(record.frames_in - std::min(lost, record.frames_in), use.with_pose);
+  return use;
 }
 
 bool is_synthetic(const std::string& source_uri) {

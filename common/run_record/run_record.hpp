@@ -83,8 +83,11 @@ struct RunRecord {
   bool interrupted = false;                              ///< Ctrl-C ended the run
   double duration_s = 0;                                 ///< from the first frame to the last pose
   std::uint64_t frames_in = 0;                           ///< frames the source delivered
+  std::uint64_t frames_left_out = 0;                     ///< frames that it had and could not deliver
+  std::uint64_t frames_out_of_range = 0;                 ///< delivered, but without a depth that slam may use
   std::uint64_t frames_dropped = 0;                      ///< frames in without a TrackingResult
   std::map<std::string, double> drops;                   ///< by place, e.g. "camera.late", "filter.queue"
+  std::map<std::string, double> left_out;                ///< by reason (camera::SkipReason): what the source left out
   std::map<std::string, ProcessUsage> processes;
   std::vector<HostClock> clocks;    ///< of services on other hosts
   std::vector<std::string> events;  ///< restarts, degraded modes, warnings, in order
@@ -92,6 +95,21 @@ struct RunRecord {
   std::vector<SampleFrame> samples;
   std::vector<JudgedFrame> judged_frames;  ///< in order of time; empty unless has_true_masks(source)
 };
+
+/// How many frames of a source a run has used. Everything that is said about a run counts by these.
+struct FrameUse {
+  std::uint64_t given = 0;      ///< the source had them, whether it could deliver them or not
+  std::uint64_t used = 0;       ///< slam got them, with a depth that it may use, and answered
+  std::uint64_t with_pose = 0;  ///< a measured one: ok, doubtful or odometry
+
+  /// Frames with pose / frames given, in [0, 1]; NaN without frames.
+  double coverage() const;
+  /// Less than half of the frames were used: whatever the poses are worth, they are not those of this source.
+  bool too_few() const { return 2 * used < given; }
+  /// "40 given, 38 used, 37 with pose".
+  std::string text() const;
+};
+FrameUse frame_use(const RunRecord& record);
 
 /// Whether the source knows which pixels move: a synthetic scene, or a TUM folder with mask/.
 bool has_true_masks(const std::string& source_uri);

@@ -29,6 +29,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/service_lock.hpp"
 #include "common/service/standard_streams.hpp"
 
@@ -75,8 +76,6 @@ class SignalWatcher {
   std::thread thread_;
 };
 
-/// A worker that makes no progress for so long is stuck. Offline one frame may take its time, closing loops and all.
-constexpr std::chrono::milliseconds kStuckAfter{1500}, kStuckAfterOffline{30'000};
 constexpr std::chrono::milliseconds kEndOfBus{3'000};
 
 /// Killed processes leave shared memory behind.
@@ -142,7 +141,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
                         shared.empty() ? SecondInstance::kReported : SecondInstance::kAllowed);
     problems.count_in(&heartbeat);
     const std::shared_ptr<void> at_end(nullptr, [&problems](void*) { problems.count_in(nullptr); });
-    heartbeat.watch_progress(pace == Pace::kRealtime ? kStuckAfter : kStuckAfterOffline);
+    heartbeat.watch_progress(std::chrono::milliseconds(patience_of(pace).stuck_ms));
     std::optional<NoPeersWarning> warning;
     if (shared.empty()) {
       warning.emplace(heartbeat, options,

@@ -128,6 +128,8 @@ CameraService::Outcome CameraService::open() {
     return fail(fmt::format("source {}: {}", config_.source, error.what()));
   }
   if (source_->info().live) open_publisher();
+  left_out_.open(source_->info().frames, static_cast<std::uint64_t>(config_.frames), source_->counters());
+  for (const std::string& note : source_->info().notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
   const auto& camera = source_->info().camera.parameters();
   SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
               source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
@@ -186,6 +188,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     std::optional<ReadItem> item = frames.next();
     if (!item) break;
     counters_ = item->counters;
+    left_out_.add(*item);
     log_skipped(*item);
     if (!item->error.empty()) return fail("the source failed: " + item->error);
     frames_in_ += item->passed_over;
@@ -200,6 +203,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
 
 CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frames) {
   ++frames_in_;
+  left_out_.add(frame.image);
   note_depth_offset(frame);
   while (!runtime_.stop.stop_requested()) {
     take_results();
@@ -342,6 +346,7 @@ void CameraService::report_counters() {
   set(service::metric::kFramesSkipped, counters_.skipped_total());
   set(service::metric::kFramesWithoutDepth, counters_.frames_without_depth);
   set(service::metric::kFramesRefused, refused_);
+  for (const auto& [name, count] : left_out_.metrics(frames_in_)) set(name.c_str(), count);
   set(service::metric::kReconnects, counters_.reconnects);
   set(service::metric::kJpegsDropped, publisher_.jpegs().dropped());
   set(service::metric::kResends, pacer_.resends());
@@ -375,7 +380,7 @@ CameraService::Outcome CameraService::fail(const std::string& message) {
 service::ExitCode CameraService::finish(Outcome outcome) {
   write_groundtruth();
   report_counters();
-  if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished);
+  if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished, left_out_.first());
   SPDLOG_INFO(
       "event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={} "
       "depth_offset_ms={:.1f}",

@@ -17,8 +17,10 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
+#include "services/camera/core/left_out.hpp"
 #include "services/camera/core/read_ahead.hpp"
 #include "services/camera/frame_publisher.hpp"
 
@@ -35,7 +37,7 @@ struct ServiceConfig {
   int jpeg_quality = 90;
   int asap_window = 3;
   int resend_after_ms = 2000;
-  double result_timeout_s = 30;
+  double result_timeout_s = 1e-3 * service::kEveryFramePatience.result_ms;
   double start_timeout_s = 30;
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};
@@ -120,6 +122,7 @@ class CameraService {
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
   SourceCounters counters_;
+  LeftOut left_out_;
   DepthOffsets depth_offsets_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;

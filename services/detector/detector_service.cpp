@@ -46,6 +46,8 @@ namespace {
 
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
 constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::chrono::milliseconds kLookAtSlam{100};
+constexpr std::int64_t kSlamGoneNs = 1'500'000'000;  // without a heartbeat
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 
 std::optional<Eigen::Isometry3d> pose_of(const msg::TrackingResult& result) {
@@ -258,13 +260,26 @@ double DetectorService::roll_for(const Arrival& arrival) {
   if (runtime_.pace == service::Pace::kLockstep) {
     const std::optional<std::int64_t> before_ns = std::exchange(last_stamp_ns_, arrival.stamp_ns);
     const bool later = before_ns && *before_ns < arrival.stamp_ns;
-    if (later && !roll_->wait_for(*before_ns, std::chrono::milliseconds(config_.roll_timeout_ms)) &&
-        !runtime_.stop.stop_requested() && roll_log_.pass()) {
-      SPDLOG_WARN("event=roll_unknown stamp_ns={} waited_ms={} effect=\"last known roll is used\"", *before_ns,
-                  config_.roll_timeout_ms);
-    }
+    if (later && !wait_for_roll(*before_ns) && !runtime_.stop.stop_requested() && roll_log_.pass())
+      SPDLOG_WARN("event=roll_unknown stamp_ns={} effect=\"last known roll is used\"", *before_ns);
   }
   return roll_->roll_rad();
+}
+
+/// False: slam is gone, or has not answered for too long.
+bool DetectorService::wait_for_roll(std::int64_t stamp_ns) {
+  const std::int64_t since_ns = service::monotonic_ns(), most_ns = std::int64_t{config_.roll_timeout_ms} * 1'000'000;
+  std::int64_t waited_ns = 0;
+  while (waited_ns < most_ns && !runtime_.stop.stop_requested()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(most_ns - waited_ns));
+    if (roll_->wait_for(stamp_ns, std::min(left, kLookAtSlam))) return true;
+    waited_ns = service::monotonic_ns() - since_ns;
+    runtime_.heartbeat.tick();
+    const bool alive = runtime_.heartbeat.alive("slam");
+    if (slam_seen_ && !alive && waited_ns > kSlamGoneNs) return false;
+    slam_seen_ = slam_seen_ || alive;
+  }
+  return false;
 }
 
 /// What computes the boxes, in the status and the log.

@@ -18,6 +18,7 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
@@ -81,7 +82,7 @@ struct ServiceConfig {
   double max_rate_hz = 0;
   std::string derotate = "off";
   double derotate_min_deg = RollConfig{}.min_roll_rad / kRadPerDeg;
-  int roll_timeout_ms = 2000;
+  int roll_timeout_ms = service::kEveryFramePatience.answer_ms;
   double first_roll_deg = 0, first_pitch_deg = 0;
 
   void bind(auto& binder) {
@@ -112,7 +113,7 @@ struct ServiceConfig {
                   "on: detect on the image turned upright by the roll of slam's poses");
     binder.field("derotate_min_deg", derotate_min_deg, {0.0, 180.0}, "a smaller roll is left as it is");
     binder.field("roll_timeout_ms", roll_timeout_ms, {1, 60000},
-                 "pace lockstep: longest wait for slam's pose of the image before");
+                 "pace lockstep: longest wait for a living slam's pose of the image before");
     binder.field("first_roll_deg", first_roll_deg, {-180.0, 180.0},
                  "roll of the first image: by how much it must be turned clockwise to stand upright");
     binder.field("first_pitch_deg", first_pitch_deg, {-60.0, 60.0}, "how far the first camera looked down");
@@ -170,6 +171,7 @@ class DetectorService {
   bool peers_matched() const;
   void report_state();
   double roll_for(const Arrival& arrival);
+  bool wait_for_roll(std::int64_t stamp_ns);
   void keep_rate(std::int64_t started_ns) const;
 
   const Config config_;
@@ -185,6 +187,7 @@ class DetectorService {
   std::shared_ptr<RollFeedback> roll_;  ///< null while detector.derotate is off
   bus::Reader<msg::TrackingResult> tracking_;
   std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before
+  bool slam_seen_ = false;                     ///< lockstep: its heartbeat
   std::mutex take_mutex_;
   std::uint64_t taken_ = 0;
   std::mutex turn_mutex_;

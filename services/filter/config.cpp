@@ -14,9 +14,9 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.choice("person_masks", person_masks, {"on", "off"},
                 "on: use the detector's person masks if it sends them; off: boxes alone");
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
-               "asap, lockstep: longest wait for the boxes of one frame");
+               "asap, lockstep: longest wait for a living detector's boxes of one frame");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000},
-               "lockstep: longest wait for slam's result of the previous frame");
+               "lockstep: longest wait for a living slam's result of the previous frame");
   binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
   binder.field("map_frame", map_frame, "frame of rt/filter/movers: as slam.map_frame");
   core.bind(binder);

@@ -7,6 +7,7 @@
 
 #include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
+#include "common/service/patience.hpp"
 #include "services/filter/core/filter_config.hpp"
 
 namespace rtd::filter {
@@ -17,8 +18,8 @@ struct ServiceConfig {
   std::string mode = msg::kDefaultFilterMode;
   std::string detector = "auto";
   std::string person_masks = "on";
-  int detections_timeout_ms = 5000;
-  int feedback_timeout_ms = 3000;
+  int detections_timeout_ms = service::kEveryFramePatience.answer_ms;
+  int feedback_timeout_ms = service::kEveryFramePatience.answer_ms;
   bool shed_load = true;
   std::string map_frame = "map";
 

@@ -27,6 +27,7 @@ constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr int kLastLoadStep = static_cast<int>(service::kLoadSteps.size()) - 1;
 constexpr double kFullWorkCores = 0.9;                   // camera, filter and slam at 30 Hz, without a detector
 constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
+constexpr std::chrono::milliseconds kLookAtSlam{100};    // whether it is still there
 constexpr std::int64_t kPatienceNs = 1'500'000'000;      // before a silent heartbeat ends the wait for detections
 
 /// The last step is for a computer that is known to be slow: on a busy one its error is larger than what it saves.
@@ -226,9 +227,10 @@ void FilterService::follow_camera(std::uint64_t changes) {
 void FilterService::apply_slam_feedback() {
   SlamUpdate update;
   if (runtime_.pace == service::Pace::kLockstep && published_ > 0) {
-    update = feedback_->take_after(message_->seq, std::chrono::milliseconds(config_.feedback_timeout_ms));
+    const std::int64_t waited_ns = wait_for_slam(message_->seq);
+    update = feedback_->take_after(message_->seq, std::chrono::milliseconds(0));
     if (!update.complete && !runtime_.stop.stop_requested() && wait_log_.pass()) {
-      SPDLOG_WARN("event=slam_silent frame={} waited_ms={}", message_->seq, config_.feedback_timeout_ms);
+      SPDLOG_WARN("event=slam_silent frame={} waited_ms={}", message_->seq, waited_ns / 1'000'000);
     }
   } else {
     update = feedback_->take();
@@ -239,6 +241,24 @@ void FilterService::apply_slam_feedback() {
     movers_.on_result(result);
     watch_load(result);
   }
+}
+
+/// Until slam has answered this frame, is gone, or has not answered for too long. Returns how long that took.
+std::int64_t FilterService::wait_for_slam(std::uint64_t seq) {
+  const std::int64_t since_ns = service::monotonic_ns();
+  std::int64_t waited_ns = 0;
+  const std::int64_t most_ns = std::int64_t{config_.feedback_timeout_ms} * 1'000'000;
+  while (waited_ns < most_ns && !runtime_.stop.stop_requested()) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(most_ns - waited_ns));
+    const bool answered = feedback_->wait_for(seq, std::min(left, kLookAtSlam));
+    waited_ns = service::monotonic_ns() - since_ns;
+    runtime_.heartbeat.tick();
+    const bool alive = runtime_.heartbeat.alive("slam");
+    const bool gone = slam_seen_ && !alive && waited_ns > kPatienceNs;
+    slam_seen_ = slam_seen_ || alive;
+    if (answered || gone) break;
+  }
+  return waited_ns;
 }
 
 /// Most frames of the first second would be lost until step after step is shed.

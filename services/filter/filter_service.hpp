@@ -75,6 +75,7 @@ class FilterService {
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
   void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
+  std::int64_t wait_for_slam(std::uint64_t seq);
   DetectorUpdate collect_detections(const msg::FrameView& frame);
   void wait_for_detections(const msg::FrameView& frame);
   /// By the detector's heartbeat, or because a program writes them: the heartbeat of a replay does not say it.
@@ -106,7 +107,7 @@ class FilterService {
 
   std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
   std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
-  bool detector_seen_ = false, detector_gone_ = false;
+  bool detector_seen_ = false, detector_gone_ = false, slam_seen_ = false;
   std::atomic<bool> detector_masks_{false};                  ///< its heartbeat says that it sends masks
   std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames

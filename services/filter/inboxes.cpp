@@ -128,6 +128,11 @@ SlamUpdate SlamFeedback::take_after(std::uint64_t seq, std::chrono::milliseconds
   return take_locked(complete(seq));
 }
 
+bool SlamFeedback::wait_for(std::uint64_t seq, std::chrono::milliseconds timeout) {
+  std::unique_lock lock(mutex_);
+  return arrived_.wait_for(lock, timeout, [&] { return closed_ || complete(seq); });
+}
+
 void SlamFeedback::close() {
   const std::lock_guard lock(mutex_);
   closed_ = true;

@@ -110,6 +110,8 @@ class SlamFeedback {
   SlamUpdate take();
   /// Waits for the result of frame `seq` and every event before it, then takes everything.
   SlamUpdate take_after(std::uint64_t seq, std::chrono::milliseconds timeout);
+  /// Waits for the same, or the end, and takes nothing; false: it has not come within the timeout.
+  bool wait_for(std::uint64_t seq, std::chrono::milliseconds timeout);
   void close();
 
  private:

@@ -180,9 +180,12 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->option_defaults()->group("Source");
   command->add_option("--source", options.source, camera::source_help())->required();
   command->add_option("--frames", options.frames, "End after this many frames");
-  command->add_option("--pace", options.pace, "realtime, asap or lockstep")
-      ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
-      ->capture_default_str();
+  command
+      ->add_option("--pace", options.pace,
+                   "lockstep: every frame, the same result each time; asap: every frame, faster; realtime: by the "
+                   "stamps, late frames are dropped. Default: lockstep for files, folders and scenes with an end, "
+                   "realtime for cameras")
+      ->check(CLI::IsMember({"realtime", "asap", "lockstep"}));
   command
       ->add_option(
           "--replay-topics", options.replay_topics,
@@ -222,7 +225,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->footer(
       "Examples:\n"
       "  rtd run --source synthetic:office --out /tmp/office --viewer\n"
-      "  rtd run --source tum:rgbd_dataset_freiburg3_walking_xyz --out walking --pace lockstep\n"
+      "  rtd run --source tum:rgbd_dataset_freiburg3_walking_xyz --out walking\n"
       "  rtd run --source ros2:/camera/color/image_raw,/camera/depth/image_raw --out live --dense");
 }
 

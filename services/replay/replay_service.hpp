@@ -10,6 +10,7 @@
 #include "common/recordings/open.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/runtime.hpp"
 #include "services/replay/input.hpp"
 #include "services/replay/outputs.hpp"
@@ -37,7 +38,7 @@ struct ServiceConfig {
   std::string paced_topic;
   int asap_window = 3;
   int resend_after_ms = 2000;
-  double result_timeout_s = 30;
+  double result_timeout_s = 1e-3 * service::kEveryFramePatience.result_ms;
   std::vector<std::string> wait_for;
   double start_timeout_s = 30;
   double wait_readers_s = 1;
@@ -48,8 +49,7 @@ struct ServiceConfig {
   void bind(auto& binder) {
     constexpr double kLongestS = 1e9;
     binder.field("file", file, "recording, or the folder with it").option("file");
-    binder.field("rate", rate, {0, 1000}, "speed, 1 = as recorded, 0 = as fast as possible")
-        .option("-r,--rate");
+    binder.field("rate", rate, {0, 1000}, "speed, 1 = as recorded, 0 = as fast as possible").option("-r,--rate");
     binder.field("loop", loop, "start again at the end").option("-l,--loop");
     binder.field("start_offset_s", start_offset_s, {0, kLongestS}, "start so many seconds after the first message")
         .option("--start-offset");
@@ -60,8 +60,7 @@ struct ServiceConfig {
         .option("--topics");
     binder.field("exclude", exclude, "leave these topics or patterns out").option("--exclude");
     binder.field("remap", remap, "rename topics: old:=new").option("-m,--remap");
-    binder.field("clock_hz", clock_hz, {0, 10000}, "rate of /clock, 0 = none, 40 without a number")
-        .option("--clock");
+    binder.field("clock_hz", clock_hz, {0, 10000}, "rate of /clock, 0 = none, 40 without a number").option("--clock");
     binder.field("pause", pause, "start paused (space continues)").option("-p,--pause,--start-paused");
     binder.field("read_ahead_mb", read_ahead_mb, {1, 16384}, "megabytes read before they are due")
         .option("--read-ahead");

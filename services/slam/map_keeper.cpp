@@ -106,17 +106,25 @@ void MapKeeper::note_trouble(std::string trouble) {
   trouble_ = std::move(trouble);
 }
 
+void write_trajectory(const std::vector<StampedPose>& poses, const std::filesystem::path& path) {
+  int number = 0;
+  for (const geometry::Trajectory& segment : geometry::split_where_time_goes_back(poses)) {
+    const std::string name = ++number == 1 ? path.string() : path.string() + "_segment_" + std::to_string(number);
+    io::write_file(name + ".txt", [&](std::ostream& out) { geometry::write_tum_trajectory(out, segment); });
+  }
+  if (number > 1)
+    SPDLOG_WARN("event=stamps_went_back segments={} file={}.txt holds=\"the first\"", number, path.string());
+}
+
 void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder) {
   std::error_code ignored;  // an existing folder is fine, an impossible one shows when the file is written
   std::filesystem::create_directories(folder, ignored);
-  io::write_file(folder / "trajectory.txt",
-             [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory()); });
+  write_trajectory(slam.trajectory(), folder / "trajectory");
   io::write_file(folder / "keyframes.txt",
-             [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.keyframes()); });
+                 [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.keyframes()); });
   for (const MapId map : slam.maps()) {
     if (map == 0) continue;
-    io::write_file(folder / ("trajectory_map_" + std::to_string(map) + ".txt"),
-               [&](std::ostream& out) { geometry::write_tum_trajectory(out, slam.trajectory(map)); });
+    write_trajectory(slam.trajectory(map), folder / ("trajectory_map_" + std::to_string(map)));
   }
   io::write_file(folder / "map.ply", [&](std::ostream& out) { write_ply(out, slam.map_points()); });
 }

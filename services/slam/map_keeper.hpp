@@ -63,9 +63,15 @@ class MapKeeper {
   std::thread thread_;
 };
 
+/// Writes PATH.txt (TUM format); where stamps go back, as when a recording is played again, PATH_segment_2.txt and so
+/// on with what follows: in each file stamps increase. Throws std::runtime_error naming the file that cannot be
+/// written.
+void write_trajectory(const std::vector<StampedPose>& poses, const std::filesystem::path& path);
+
 /// Writes trajectory.txt, keyframes.txt (TUM format) and map.ply of the first map into `folder`, which is made when
-/// missing, and trajectory_map_N.txt for each other map that was never merged: it has a world frame of its own. Call
-/// after SlamSystem::finish(). Throws std::runtime_error naming the file that cannot be written.
+/// missing, and trajectory_map_N.txt for each other map that was never merged: it has a world frame of its own;
+/// trajectories as write_trajectory(). Call after SlamSystem::finish(). Throws std::runtime_error naming the file that
+/// cannot be written.
 void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder);
 
 }  // namespace rtd::slam

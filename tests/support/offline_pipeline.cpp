@@ -68,7 +68,8 @@ eval::PublishedPose published_pose(const slam::FrameResult& result) {
 
 void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
   const auto tracked = static_cast<double>(report.trajectory.size());
-  report.coverage = report.frames == 0 ? 0.0 : tracked / static_cast<double>(report.frames);
+  const auto given = static_cast<double>(report.frames + report.frames_left_out);
+  report.coverage = report.frames == 0 ? 0.0 : tracked / given;
   report.ate_rmse_m = eval::ate(report.trajectory, report.groundtruth).error_m.rmse;
   eval::Trajectory online;
   for (const slam::FrameResult& result : published) online.push_back({result.stamp_ns, result.T_world_camera});
@@ -191,6 +192,8 @@ OfflineReport run_offline(const OfflineOptions& options) {
   report.trajectory_tum = text.str();
   report.trajectory = slam.trajectory();
   report.groundtruth = source->groundtruth();
+  const bool whole = options.max_frames == 0 && options.first_frame == 0 && options.frame_step == 1;
+  if (whole) report.frames_left_out = source->counters().frames_left_out();
   for (const slam::LoopClosure& closure : slam.loops()) report.loops.push_back(judge(closure, report.groundtruth));
   judge_results(results, slam.prior() != nullptr, report);
   return report;

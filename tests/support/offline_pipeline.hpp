@@ -86,7 +86,8 @@ struct OfflineReport {
   double rpe_trans_rmse_m = 0, rpe_rot_rmse_deg = 0;  ///< per second
   eval::Integrity integrity;                          ///< of all poses as they were published
   eval::Drift drift;                                  ///< of the measured ones in the first map
-  double coverage = 0;                                ///< share of the frames that `trajectory` has
+  std::size_t frames_left_out = 0;                    ///< the source had them; of a source that is played as a whole
+  double coverage = 0;                                ///< share of the frames of the source that `trajectory` has
   std::size_t predicted_frames = 0;                   ///< in the trajectory by IMU or wheels
   double predicted_nees = 0;  ///< mean of those as they were published, 6 when their covariances are true
   double disparity_px_m = 0, readout_s = 0;  ///< of the sensor, as slam knows it at the end

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "common/camera/recording/ros_images.hpp"
 
@@ -20,7 +21,9 @@ std::string place_of(const StampedMessage& color) {
 void FramePairer::add_color(StampedMessage color, SkipLog& skips) {
   newest_recorded_ns_ = std::max(newest_recorded_ns_, color.message.recorded_ns);
   if (last_color_ns_ && color.stamp_ns == *last_color_ns_) {
-    return skips.add({SkipReason::kStampDoubled, place_of(color) + " has the stamp of the frame before"});
+    const char* const detail = color.stamp_ns == 0 ? ": the stamps are all 0, as of a driver that does not fill them"
+                                                   : " has the stamp of the frame before";
+    return skips.add({SkipReason::kStampDoubled, place_of(color) + detail});
   }
   if (last_color_ns_ && color.stamp_ns < *last_color_ns_) {
     return skips.add({SkipReason::kStampBackwards, place_of(color) + " is older than the frame before"});
@@ -36,7 +39,7 @@ void FramePairer::add_depth(StampedMessage depth) {
                        [](const StampedMessage& other, std::int64_t stamp_ns) { return other.stamp_ns < stamp_ns; });
   if (place != depths_.end() && place->stamp_ns == depth.stamp_ns) return;
   depths_.insert(place, std::move(depth));
-  if (depths_.size() > kMaxPending) depths_.pop_front();
+  if (depths_.size() > kMaxPending) forget_oldest();
 }
 
 bool FramePairer::decided() const {
@@ -54,10 +57,17 @@ std::optional<std::size_t> FramePairer::partner_of_front() const {
 
 /// No colour image to come is as old.
 void FramePairer::forget_before(std::int64_t stamp_ns) {
-  while (!depths_.empty() && depths_.front().stamp_ns < stamp_ns) depths_.pop_front();
+  while (!depths_.empty() && depths_.front().stamp_ns < stamp_ns) forget_oldest();
+}
+
+void FramePairer::forget_oldest() {
+  depths_.pop_front();
+  ++depth_alone_;
 }
 
 std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
+  if (finished_ && colors_.empty()) depth_alone_ += std::exchange(depths_, {}).size();
+  skips.counters().depth_alone += std::exchange(depth_alone_, 0);
   while (!colors_.empty() && decided()) {
     const std::optional<std::size_t> partner = partner_of_front();
     StampedMessage color = std::move(colors_.front());

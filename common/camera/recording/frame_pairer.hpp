@@ -49,10 +49,12 @@ class FramePairer {
   bool decided() const;
   std::optional<std::size_t> partner_of_front() const;
   void forget_before(std::int64_t stamp_ns);
+  void forget_oldest();
 
   const Options options_;
   std::deque<StampedMessage> colors_, depths_;  ///< by stamp
   std::optional<std::int64_t> last_color_ns_;
+  std::uint64_t depth_alone_ = 0;  ///< not counted yet
   std::int64_t newest_recorded_ns_ = 0;
   bool finished_ = false;
 };

@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/image_files.hpp"
+#include "common/geometry/pose_list.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -55,12 +57,28 @@ SkippedInput malformed(const fs::path& file, const io::TextLine& line, const std
   return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
 }
 
+std::string joined(std::span<const std::string> words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// The columns of a list with commas between them, else the words of the line: names may have blanks.
+std::vector<std::string> columns_of(const io::TextLine& line) {
+  if (line.fields[0].find(',') == std::string::npos) return line.fields;
+  std::vector<std::string> columns;
+  for (const io::TextLine& split : io::split_lines(joined(line.fields), ",")) columns = split.fields;
+  for (std::string& column : columns) column.erase(0, column.find_first_not_of(' '));
+  return columns;
+}
+
 std::vector<StampedFile> read_list(const fs::path& file, std::vector<SkippedInput>& skipped) {
   std::vector<StampedFile> entries;
   for (const io::TextLine& line : read_lines(file)) {
-    const auto stamp_ns = stamp_of(line.fields[0], at_line(file, line.number));
-    if (stamp_ns && line.fields.size() == 2) {
-      entries.push_back({*stamp_ns, line.fields[1]});
+    const std::vector<std::string> columns = columns_of(line);
+    const auto stamp_ns = stamp_of(columns[0], at_line(file, line.number));
+    if (stamp_ns && columns.size() > 1) {
+      entries.push_back({*stamp_ns, joined(std::span(columns).subspan(1))});
     } else {
       skipped.push_back(malformed(file, line, "stamp file"));
     }
@@ -79,10 +97,15 @@ std::vector<FilePair> read_associations(const fs::path& file, std::vector<Skippe
   std::vector<FilePair> pairs;
   for (const io::TextLine& line : read_lines(file)) {
     const std::string where = at_line(file, line.number);
-    const auto first_ns = stamp_of(line.fields[0], where);
-    const auto second_ns = line.fields.size() == 4 ? stamp_of(line.fields[2], where) : std::nullopt;
+    const std::vector<std::string> columns = columns_of(line);
+    const std::span<const std::string> words(columns);
+    std::size_t second = 2;  // the second stamp: the first name may have blanks
+    while (second < words.size() && !io::parse_number(words[second])) ++second;
+    const auto first_ns = stamp_of(words[0], where);
+    const auto second_ns = second + 1 < words.size() ? stamp_of(words[second], where) : std::nullopt;
     if (first_ns && second_ns) {
-      pairs.push_back(colour_first({{*first_ns, line.fields[1]}, {*second_ns, line.fields[3]}}));
+      pairs.push_back(colour_first(
+          {{*first_ns, joined(words.subspan(1, second - 1))}, {*second_ns, joined(words.subspan(second + 1))}}));
     } else {
       skipped.push_back(malformed(file, line, "stamp rgb_file stamp depth_file"));
     }
@@ -122,14 +145,21 @@ void sort_unique(std::vector<StampedFile>& entries) {
   entries.erase(std::unique(entries.begin(), entries.end(), same), entries.end());
 }
 
-geometry::Trajectory read_groundtruth(const std::filesystem::path& folder, const std::vector<FilePair>& pairs) {
+/// SLAM needs no ground truth: what cannot be used of it becomes a note.
+geometry::Trajectory read_groundtruth(const std::filesystem::path& folder, const std::vector<FilePair>& pairs,
+                                      std::vector<std::string>& notes) {
   const std::filesystem::path file = folder / "groundtruth.txt";
   if (!std::filesystem::exists(file) || pairs.empty()) return {};
   try {
-    return poses_of_span(geometry::read_tum_trajectory(file, geometry::TumRows::kAsWritten),
-                         pairs.front().color.stamp_ns, pairs.back().color.stamp_ns);
+    geometry::PoseList list = geometry::read_pose_list(file);
+    for (auto* lines : {&list.notes, &list.damages}) std::ranges::move(*lines, std::back_inserter(notes));
+    geometry::Trajectory of_span =
+        poses_of_span(std::move(list.poses), pairs.front().color.stamp_ns, pairs.back().color.stamp_ns);
+    if (of_span.empty()) notes.push_back(file.string() + ": not used, it has no pose at the time of the frames");
+    return of_span;
   } catch (const geometry::TrajectoryError& error) {
-    throw SourceError(error.what());  // a wrong reference would falsify every figure
+    notes.push_back(std::string("ground truth not used: ") + error.what());
+    return {};
   }
 }
 
@@ -147,6 +177,7 @@ PairList read_pairs(const fs::path& folder, std::int64_t tolerance_ns) {
   sort_unique(depth);
   const std::vector<geometry::StampPair> found =
       geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), tolerance_ns);
+  list.depth_alone = depth.size() - found.size();
   auto pair = found.begin();
   for (std::size_t i = 0; i < color.size(); ++i) {
     if (pair != found.end() && pair->first == i) {
@@ -166,7 +197,8 @@ TumSource::TumSource(std::string uri, std::filesystem::path folder, Options opti
   const Calibration calibration = load_calibration(folder_);
   pairs_ = std::move(list.pairs);
   for (SkippedInput& input : list.skipped) skips_.add(std::move(input));
-  groundtruth_ = read_groundtruth(folder_, pairs_);
+  skips_.counters().depth_alone = list.depth_alone;
+  groundtruth_ = read_groundtruth(folder_, pairs_, info_.notes);
   info_.uri = std::move(uri);
   info_.fps = calibration.fps;
   info_.frames = pairs_.size();

@@ -26,6 +26,7 @@ struct FilePair {
 struct PairList {
   std::vector<FilePair> pairs;  ///< colour stamps strictly increasing
   std::vector<SkippedInput> skipped;
+  std::uint64_t depth_alone = 0;  ///< depth images that no colour image was found for
 };
 
 /// The pairs of a TUM folder: associations.txt unchanged when there is one (a depth image may occur twice there),

@@ -116,11 +116,16 @@ constexpr char kTaskFile[] = "variant.json";
 
 /// What a run depends on: a result is kept only when none of it has changed.
 nlohmann::json settings_of(const AblateOptions& options, const VariantTask& task) {
-  return {{"version", RTD_VERSION},       {"source", task.source},
-          {"mode", task.variant.mode},    {"settings", task.variant.settings},
-          {"set", options.config.overrides},     {"config", options.config.file},
-          {"pace", options.pace},         {"frames", options.frames},
-          {"detector", options.detector}, {"model", options.model}};
+  return {{"version", RTD_VERSION},
+          {"source", task.source},
+          {"mode", task.variant.mode},
+          {"settings", task.variant.settings},
+          {"set", options.config.overrides},
+          {"config", options.config.file},
+          {"pace", options.pace},
+          {"frames", options.frames},
+          {"detector", options.detector},
+          {"model", options.model}};
 }
 
 std::vector<std::string> run_command(const AblateOptions& options, const VariantTask& task, const fs::path& folder) {
@@ -197,10 +202,13 @@ VariantRun run_variant(const AblateOptions& options, const VariantTask& task) {
 }
 
 std::string result_text(const Measurement& m) {
-  return m.failure.empty() ? fmt::format("ATE {:.4f} m, coverage {:.3f}", m.ate_m, m.coverage) : "failed: " + m.failure;
+  if (!m.failure.empty()) return "failed: " + m.failure;
+  return fmt::format("ATE {:.4f} m over {:.0f} poses, coverage {:.3f} of {:.0f} frames", m.ate_m, m.ate_poses,
+                     m.coverage, m.frames);
 }
 
-/// Prints what is run, as "[ 3/24] walk_xyz, without belief: ATE 0.0038 m, coverage 1.000 (14 s; 5 min left)".
+/// Prints what is run, as "[ 3/24] walk_xyz, without belief: ATE 0.0038 m over 210 poses, coverage 1.000 of 210
+/// frames (14 s; 5 min left)".
 class Progress {
  public:
   explicit Progress(const Ablation& ablation)

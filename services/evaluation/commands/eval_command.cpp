@@ -14,6 +14,7 @@
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
@@ -41,10 +42,13 @@ std::string rpe_rows(const std::string& name, const RpeResult& rpe) {
 }
 
 std::string coverage_rows(const Coverage& coverage, std::int64_t start_ns) {
-  std::string text = coverage.frames > 0 ? fmt::format("coverage               {:.2f} % ({} of {} frames)\n",
-                                                       100 * coverage.fraction, coverage.tracked, coverage.frames)
-                                         : fmt::format("coverage               {:.2f} % of the ground truth's time\n",
-                                                       100 * coverage.fraction);
+  std::string text =
+      coverage.frames > 0
+          ? fmt::format("coverage               {:.2f} % ({} of {} frames)\n", 100 * coverage.fraction,
+                        coverage.tracked, coverage.frames)
+          : fmt::format(
+                "time with poses        {:.2f} % of the ground truth's (--frames LIST: coverage of the frames)\n",
+                100 * coverage.fraction);
   for (std::size_t i = 0; i < std::min(coverage.lost.size(), kShownSpans); ++i) {
     const LostSpan& span = coverage.lost[i];
     text += fmt::format("  without poses        {:.2f} s to {:.2f} s after the start",
@@ -76,23 +80,79 @@ struct Inputs {
   Trajectory estimate, groundtruth;
   std::vector<PublishedPose> published;  ///< of the estimate, where states are known
   std::optional<std::vector<std::int64_t>> frames_ns;
+  std::size_t frames_given = 0;    ///< frames of the source, of which frames_ns may be a part
+  std::vector<std::string> notes;  ///< nothing was lost
   std::vector<std::string> damages;
 };
+
+void require_stamps_where_given(const EvalOptions& options, const PoseFile& estimate, const PoseFile& groundtruth) {
+  const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
+  if (given && !estimate.took_stamps && !groundtruth.took_stamps)
+    throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
+}
+
+/// Poses without stamps belong to those of the same number in the other file, whose stamps they take.
+void pair_by_number(const EvalOptions& options, PoseFile& estimate, PoseFile& groundtruth,
+                    std::vector<std::string>& notes) {
+  if (!estimate.numbered && !groundtruth.numbered) return;
+  const std::size_t poses = estimate.poses.size();
+  if (poses != groundtruth.poses.size()) {
+    throw TrajectoryError(fmt::format(
+        "{}: 12 numbers a line have no stamps, and {} poses cannot be those of the {} in the other file; give --times "
+        "FILE (a stamp in seconds a line, as times.txt of the sequence) or --rate HZ",
+        estimate.numbered ? options.estimate : options.groundtruth, poses, groundtruth.poses.size()));
+  }
+  Trajectory& without = estimate.numbered ? estimate.poses : groundtruth.poses;
+  const Trajectory& with = estimate.numbered ? groundtruth.poses : estimate.poses;
+  for (std::size_t i = 0; i < poses; ++i) without[i].stamp_ns = with[i].stamp_ns;
+  notes.push_back(estimate.numbered && groundtruth.numbered
+                      ? fmt::format("no stamps: pose i belongs to pose i, at {:g} Hz (--rate HZ)", kNumberedHz)
+                      : "one file has no stamps: pose i belongs to pose i of the other");
+}
+
+/// The frames of the run that wrote the estimate: its folder has run.json.
+void take_frames_of_run(const std::filesystem::path& folder, Inputs& inputs) {
+  const std::filesystem::path file = folder / "run.json";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return;
+  try {
+    const run_record::RunRecord record = run_record::read_run_json(file);
+    std::vector<std::int64_t> stamps_ns;
+    for (const run_record::FrameRecord& frame : record.frames) stamps_ns.push_back(frame.tracking.stamp_ns);
+    if (!std::ranges::is_sorted(stamps_ns)) return;
+    inputs.frames_ns = std::move(stamps_ns);
+    inputs.frames_given = run_record::frame_use(record).given;
+  } catch (const run_record::RunFileError&) {
+    // of another version, or not of a run: coverage is by time then
+  }
+}
+
+/// Coverage counts all frames of the source.
+void count_given(const Inputs& inputs, Coverage& coverage) {
+  if (!inputs.frames_ns || inputs.frames_given <= coverage.frames) return;
+  coverage.frames = inputs.frames_given;
+  coverage.fraction = static_cast<double>(coverage.tracked) / static_cast<double>(coverage.frames);
+}
 
 Inputs read_inputs(const EvalOptions& options) {
   PoseFile estimate = read_pose_file(options.estimate, options.stamps);
   PoseFile groundtruth = read_pose_file(options.groundtruth, options.stamps);
-  const bool given = options.stamps.rate_hz > 0 || !options.stamps.times_file.empty();
-  if (given && !estimate.took_stamps && !groundtruth.took_stamps)
-    throw service::ConfigError("--rate and --times are for KITTI's format, but both files have stamps; leave them out");
-  Inputs inputs{std::move(estimate.poses),
-                std::move(groundtruth.poses),
-                std::move(estimate.published),
-                {},
-                std::move(estimate.damages)};
+  require_stamps_where_given(options, estimate, groundtruth);
+  Inputs inputs;
+  pair_by_number(options, estimate, groundtruth, inputs.notes);
+  inputs.estimate = std::move(estimate.poses);
+  inputs.groundtruth = std::move(groundtruth.poses);
+  inputs.published = std::move(estimate.published);
+  for (PoseFile* file : {&estimate, &groundtruth}) {
+    std::ranges::move(file->notes, std::back_inserter(inputs.notes));
+    std::ranges::move(file->damages, std::back_inserter(inputs.damages));
+  }
   for (PublishedPose& pose : inputs.published) pose.stamp_ns += std::llround(options.offset_s * 1e9);
-  std::ranges::move(groundtruth.damages, std::back_inserter(inputs.damages));
-  if (!options.frames.empty()) inputs.frames_ns = read_frame_stamps(options.frames);
+  if (!options.frames.empty()) {
+    inputs.frames_ns = read_frame_stamps(options.frames);
+  } else {
+    take_frames_of_run(std::filesystem::path(options.estimate).parent_path(), inputs);
+  }
   return inputs;
 }
 
@@ -192,14 +252,18 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
   return guarded("rtd eval", err, [&] {
     const Inputs inputs = read_inputs(options);
-    const Evaluation evaluation =
+    Evaluation evaluation =
         evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
+    count_given(inputs, evaluation.coverage);
     if (evaluation.ate.error_m.count == 0) {
       err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
       return service::kRunFailed;
     }
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     out << text_of(evaluation, integrity_of(inputs), options);
+    if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))
+      err << "rtd eval: note: " << *unit << '\n';
+    for (const std::string& note : inputs.notes) err << "rtd eval: note: " << note << '\n';
     for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
     return inputs.damages.empty() ? service::kOk : service::kPartialLoss;
   });

@@ -86,8 +86,7 @@ int compare(const std::string& out_dir, const std::string& page) {
 
 void print_next_steps(const std::string& page, const std::string& detector) {
   std::cout << "\n  detector weights: " << detector << "\n  both trajectories: " << page << "\n\n  next:\n"
-            << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence, at its "
-               "recorded pace\n"
+            << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence\n"
             << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
             << "    rtd run --source 'synthetic:office?frames=0' --out DIR    no data at all, endless: Ctrl-C\n"
             << "    rtd demo --dataset fr3_walking_xyz                        a real sequence with people (download)\n"

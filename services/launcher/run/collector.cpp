@@ -136,6 +136,16 @@ bool Collector::tracked_any() const {
   return builder_.tracked_any();
 }
 
+bool Collector::any_frame() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.frames_in() > 0;
+}
+
+std::string Collector::camera_message() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.camera_message();
+}
+
 void Collector::close() {
   const std::lock_guard lock(mutex_);
   builder_.close();

@@ -38,6 +38,8 @@ class Collector {
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   bool tracked_any() const;
+  bool any_frame() const;  ///< the camera has given one
+  std::string camera_message() const;
   /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
   /// ever, for they would wait for that thread, but have no receiver any more.
   void subscribe_again();

@@ -23,6 +23,7 @@
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/process/lost_lock.hpp"
+#include "services/launcher/run/frame_verdict.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -56,10 +57,11 @@ void print_setup(const RunSetup& setup, Terminal& terminal) {
                              setup.bus_options.vendor, setup.bus_options.domain));
 }
 
-service::ExitCode exit_code(RunOutcome outcome, bool tracked_any) {
+service::ExitCode exit_code(RunOutcome outcome, bool tracked_any, bool too_few) {
   if (outcome == RunOutcome::kInterrupted) return service::kInterrupted;
   if (outcome == RunOutcome::kConfigError) return service::kUsageOrConfig;
-  return outcome == RunOutcome::kComplete && tracked_any ? service::kOk : service::kRunFailed;
+  if (outcome != RunOutcome::kComplete || !tracked_any) return service::kRunFailed;
+  return too_few ? service::kPartialLoss : service::kOk;
 }
 
 /// What the launcher leaves in the folder of the run beside what the services wrote.
@@ -114,13 +116,17 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   begin_trace(setup);
   const RunOutcome outcome = session.run(plans);
   end_trace(setup, terminal);
-  result.code = exit_code(outcome, session.tracked_any());
+  run_record::RunRecord record = session.record();
+  const std::string too_few = why_too_few(record, session.camera_message());
+  result.code = exit_code(outcome, session.tracked_any(), !too_few.empty());
   if (outcome == RunOutcome::kConfigError) return result;
-  write_record(session.record(), setup.out_dir);
+  if (!too_few.empty()) record.events.push_back(too_few);
+  write_record(record, setup.out_dir);
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   end.begin(result.code);
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
+  if (outcome == RunOutcome::kComplete && !too_few.empty()) terminal.warn("rtd: " + too_few);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   if (lost_locks() > 0) {  // threads that stand still cannot be waited for
     std::cout.flush();

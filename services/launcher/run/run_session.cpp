@@ -56,9 +56,12 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   require_free_domain();
   clear_out_dir(setup_);
+  for (const std::string& text : setup_.source_notes) note(text);
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
-  supervise(plans.back());
+  ServicePlan camera = plans.back();
+  camera.has_served = [this] { return collector_.any_frame(); };
+  supervise(camera);
   terminal_.end_status();
   return supervisor_.outcome();
 }

@@ -30,6 +30,8 @@ class RunSession {
   RunOutcome run(const std::vector<ServicePlan>& plans);
   /// What was observed; call it after run().
   run_record::RunRecord record() const;
+  /// At the end the first piece that the source left out; may be empty.
+  std::string camera_message() const { return collector_.camera_message(); }
   bool tracked_any() const { return collector_.tracked_any(); }
 
  private:

@@ -10,8 +10,12 @@
 #include <memory>
 #include <optional>
 
+#include "common/camera/device_uri.hpp"
+#include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/services.hpp"
@@ -21,6 +25,7 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/pacer.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -39,6 +44,23 @@ void check_sections(const std::vector<std::string>& overrides) {
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
+}
+
+/// A camera, a scene without an end, and a detector that serves at its own pace do not wait. Of what is stored every
+/// frame is played, with the same result each time.
+const char* usual_pace(const RunSetup& setup) {
+  if (setup.detector == "remote") return "realtime";
+  if (camera::is_device(setup.source)) return camera::parse_device_uri(setup.source).recorded ? "lockstep" : "realtime";
+  if (camera::is_live(setup.source)) return "realtime";
+  if (!camera::is_of_kind(setup.source, camera::SourceKind::kScene) || setup.frames > 0) return "lockstep";
+  const camera::SyntheticOptions scene = camera::parse_synthetic_options(camera::parse_source_uri(setup.source));
+  return scene.frames == 0 ? "realtime" : "lockstep";
+}
+
+void choose_pace(RunSetup& setup) {
+  const service::Pace pace = service::parse_pace(setup.pace.empty() ? usual_pace(setup) : setup.pace);
+  setup.pace = service::to_string(pace);
+  setup.launcher.hung_after_ms = service::patience_of(pace).silent_ms;
 }
 
 /// The launcher reads its own sections; the services check theirs when they start.
@@ -78,14 +100,28 @@ void choose_vendors(RunSetup& setup) {
   }
 }
 
-std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
-  if (camera::is_live(uri)) {
-    camera::check_live_uri(uri);
-    return limit;
+/// No one plugs a camera in because a run waits for it. Cameras of the network may still announce themselves.
+void require_local_camera(const std::string& source) {
+  if (!camera::is_device(source)) return;
+  const camera::DeviceUri uri = camera::parse_device_uri(source);
+  if (uri.scheme != "openni2" || uri.recorded) return;
+  const std::string why = why_no_camera(uri.device, camera::find_openni2_cameras());
+  if (!why.empty()) throw ConfigError(why);
+}
+
+/// Opens a source that is no running camera, for its length and its notes.
+void look_at_source(RunSetup& setup) {
+  if (camera::is_live(setup.source)) {
+    camera::check_live_uri(setup.source);
+    require_local_camera(setup.source);
+    setup.total_frames = setup.frames;
+    return;
   }
-  const std::uint64_t frames = camera::make_source(uri)->info().frames;
-  if (limit == 0) return frames;
-  return frames == 0 ? limit : std::min(frames, limit);
+  const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
+  setup.source_notes = source->info().notes;
+  setup.total_frames = source->info().frames;
+  if (setup.frames > 0)
+    setup.total_frames = setup.total_frames == 0 ? setup.frames : std::min(setup.total_frames, setup.frames);
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.
@@ -215,6 +251,18 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
   return arguments;
 }
 
+/// trajectory_map_1.txt, trajectory_segment_2.txt, ...
+std::vector<fs::path> more_trajectories(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    const bool ours = name.starts_with("trajectory_map_") || name.starts_with("trajectory_segment_");
+    if (ours && name.ends_with(".txt")) files.push_back(entry.path());
+  }
+  return files;
+}
+
 void check_trace_file(const std::string& path) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) throw ConfigError("--trace " + path + ": this is a folder: name a file in it");
@@ -246,14 +294,18 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
 
 RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup(options);
+  setup.source = camera::complete_uri(setup.source);
+  choose_pace(setup);
   load_config(setup);
   choose_vendors(setup);
-  setup.pace = service::to_string(service::parse_pace(setup.pace));
-  setup.source = camera::complete_uri(setup.source);
   setup.replay = choose_replay(setup, setup.bus_options.robot);
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
-  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
+  if (setup.replay) {
+    setup.total_frames = setup.replay.frames;
+  } else {
+    look_at_source(setup);
+  }
   choose_detector(setup);
   choose_map(setup);
   process::make_out_folder(setup.out_dir);
@@ -271,6 +323,9 @@ void clear_out_dir(const RunSetup& setup) {
                       fs::equivalent(setup.services.map.load, map, error);  // --map of an earlier run here
   error.clear();
   if (!needed) fs::remove(map, error);
+  for (const fs::path& file : more_trajectories(out_dir)) {
+    if (!error) fs::remove(file, error);
+  }
   for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
                            "static_map.ply", "map.pgm", "map.yaml", "map.bt", "background.png", "groundtruth.txt",
                            "run.json", "report.json", "report.html"}) {

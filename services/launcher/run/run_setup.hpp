@@ -12,6 +12,7 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
 
@@ -21,7 +22,7 @@ namespace rtd::launcher {
 struct LauncherConfig {
   int max_restarts = 5;
   int first_backoff_ms = 200;
-  int hung_after_ms = 3000;
+  int hung_after_ms = service::patience_of(service::Pace::kRealtime).silent_ms;  ///< of the pace, see load_config()
   int domain_check_ms = 500;
   int connect_timeout_ms = 15000;
   int interrupt_grace_ms = 1200;
@@ -32,8 +33,10 @@ struct LauncherConfig {
     binder.field("max_restarts", max_restarts, {0, 100}, "deaths of a service in a row before it is given up");
     binder.field("first_backoff_ms", first_backoff_ms, {0, 2000},
                  "pause before the restart of a service that lived for less than 5 s, doubled for each further one");
-    binder.field("hung_after_ms", hung_after_ms, {0, 3600000},
-                 "silence after which a service is killed and restarted, 0 = never: for a debugger");
+    binder.field(
+        "hung_after_ms", hung_after_ms, {0, 3600000},
+        "silence after which a service is killed and restarted, 0 = never: for a debugger; 10000 where every frame "
+        "is played");
     binder.field("domain_check_ms", domain_check_ms, {0, 10000},
                  "looking for another run in the same domain before anything starts");
     binder.field("connect_timeout_ms", connect_timeout_ms, {0, 60000},
@@ -71,10 +74,10 @@ struct ServiceSettings {
 /// The command line of `rtd run`.
 struct RunOptions {
   std::string source;
-  std::string pace = "realtime";
-  service::ConfigSources config;     ///< for any service, with the options of services
-  std::vector<std::string> dds_of;   ///< "SERVICE=VENDOR": another DDS for one service
-  std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
+  std::string pace;                 ///< empty: every frame of what is stored, a camera in real time
+  service::ConfigSources config;    ///< for any service, with the options of services
+  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
+  std::string detector = "auto";    ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string out_dir;
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser
@@ -113,6 +116,7 @@ struct RunSetup : RunOptions {
   bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
+  std::vector<std::string> source_notes;          ///< what people should know of the source's data
   std::string model_path;                         ///< empty: no detector in this run
   std::string detector_note;                      ///< "YOLOX-nano, Apache-2.0", or "off (why)"
   std::string mask_model_path;                    ///< empty: boxes alone

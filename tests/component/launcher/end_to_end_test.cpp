@@ -67,7 +67,7 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
                            "report.html", "logs/camera.log", "logs/filter.log", "logs/slam.log"}) {
     EXPECT_GT(fs::file_size(out_ + "/" + file), 0U) << file;
   }
-  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 in, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 given, 30 used, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
 }
 
 TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_run) {
@@ -98,6 +98,20 @@ TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_r
   for (const char* way : {"read", "camera to pose"}) EXPECT_EQ(spans[way], 60) << way << ": begin and end";
 }
 
+TEST_F(EndToEndTest, a_run_that_used_less_than_half_of_its_frames_is_no_success) {
+  RtdCommand camera(fs::path(RTD_EXECUTABLE).parent_path() / "rtd-camera");
+  const std::string folder = scratch_ / "frames";
+  ASSERT_EQ(camera.run({"--source", "synthetic:office?frames=12", "--export", folder}), 0) << camera.output();
+  std::vector<fs::path> images;
+  for (const auto& file : fs::directory_iterator(folder + "/rgb")) images.push_back(file.path());
+  std::ranges::sort(images);
+  for (std::size_t i = 4; i < images.size(); ++i) std::ofstream(images[i], std::ios::trunc);
+  EXPECT_EQ(rtd_.run(arguments(134, "tum:" + folder, {"--pace", "lockstep", "--detector", "off"})), 3);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("only 4 of 12 frames were used; 8 x color_unreadable: colour images are"),
+                                   HasSubstr("12 given, 4 used, 4 with pose  (color_unreadable 8)")));
+  EXPECT_NEAR(report()["coverage"], 1.0 / 3, 1e-9);
+}
+
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
   EXPECT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("no such folder")));
@@ -109,7 +123,8 @@ TEST_F(EndToEndTest, a_second_run_into_the_same_folder_is_refused_and_deletes_no
   const std::string pid = std::to_string(rtd_.process());
   RtdCommand second, ablation;
   EXPECT_EQ(second.run(arguments(133, "synthetic:office?frames=5")), 2);
-  EXPECT_THAT(second.output(), AllOf(HasSubstr("--out " + out_), HasSubstr("process " + pid), HasSubstr("another folder")));
+  EXPECT_THAT(second.output(),
+              AllOf(HasSubstr("--out " + out_), HasSubstr("process " + pid), HasSubstr("another folder")));
   EXPECT_EQ(ablation.run({"ablate", "--source", "synthetic:office?frames=5", "--out", out_, "--domain", "133"}), 2);
   EXPECT_THAT(ablation.output(), HasSubstr("process " + pid));
   EXPECT_TRUE(fs::exists(out_ + "/logs/slam.log"));
@@ -137,8 +152,8 @@ TEST_F(EndToEndTest, files_that_a_run_clears_are_not_reached_through_links) {
 TEST_F(EndToEndTest, a_run_whose_output_is_not_read_continues_to_its_report) {
   RtdCommand shell("/bin/sh");
   const std::string rtd = RTD_EXECUTABLE;
-  const std::string run = rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 134 --out " +
-                          out_;
+  const std::string run =
+      rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 134 --out " + out_;
   ASSERT_EQ(shell.run({"-c", "{ " + run + " 2>&1; echo $? >" + out_ + "/code; } | head -1"}), 0) << shell.output();
   EXPECT_EQ(text_of(out_ + "/code"), "0\n");
   EXPECT_EQ(report()["frames_in"], 20);
@@ -148,8 +163,8 @@ TEST_F(EndToEndTest, a_run_whose_output_is_not_read_continues_to_its_report) {
 }
 
 TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkpoint) {
-  rtd_.start(
-      arguments(130, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
+  rtd_.start(arguments(130, "synthetic:office?frames=180",
+                       {"--pace", "realtime", "--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
   ASSERT_EQ(::kill(pid_of("slam"), SIGKILL), 0);
@@ -179,7 +194,7 @@ TEST_F(EndToEndTest, a_second_run_finds_its_place_in_the_map_of_the_first) {
 }
 
 TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {
-  rtd_.start(arguments(122, "synthetic:office?frames=150", {"--detector", "off"}));
+  rtd_.start(arguments(122, "synthetic:office?frames=150", {"--pace", "realtime", "--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
   ASSERT_EQ(::kill(pid_of("filter"), SIGKILL), 0);

@@ -129,6 +129,23 @@ TEST_F(SupervisedRunTest, a_killed_service_is_named_and_restarted_and_the_others
   EXPECT_THAT(rtd_.output(), Not(HasSubstr("filter died")));
 }
 
+TEST_F(SupervisedRunTest, a_camera_of_this_host_that_is_not_there_ends_the_run_before_anything_starts) {
+  std::vector<std::string> local = arguments();
+  local[2] = "openni2:1d27/0609@250/250";
+  EXPECT_EQ(rtd_.run(local), 2);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--source openni2:1d27/0609@250/250"), HasSubstr("'rtd doctor' says")));
+  EXPECT_FALSE(fs::exists(scratch_ / "out/logs/slam.log"));
+}
+
+TEST_F(SupervisedRunTest, a_camera_that_never_gave_a_frame_is_not_restarted) {
+  script("camera", "echo 'no frame within 30 s' >&2; exit 1");
+  std::vector<std::string> endless = arguments();
+  endless[2] = "synthetic:office?frames=0";
+  EXPECT_EQ(rtd_.run(endless), 1);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("before its first frame: not started again"),
+                                   HasSubstr("no frame within 30 s"), Not(HasSubstr("restarted"))));
+}
+
 TEST_F(SupervisedRunTest, a_live_camera_that_is_restarted_does_not_wait) {
   const std::string marker = scratch_ / "died";
   script("camera", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -KILL $$; fi; echo \"$@\"");

@@ -12,6 +12,7 @@
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/tum/tum_source.hpp"
+#include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"
 #include "tests/fuzz/files/text_mutation.hpp"
@@ -111,7 +112,7 @@ std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {
 }
 
 std::string check_poses(const std::filesystem::path& file, Counted& counted) {
-  geometry::Trajectory poses = geometry::read_tum_trajectory(file, geometry::TumRows::kAsWritten);
+  geometry::Trajectory poses = geometry::read_pose_list(file).poses;
   counted.poses += poses.size();
   std::ranges::stable_sort(poses, {}, &geometry::StampedPose::stamp_ns);
   for (const geometry::StampedPose& pose : poses) {

@@ -233,12 +233,20 @@ TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
   EXPECT_FALSE(source->true_pose(900'000'000));
 }
 
-TEST(TumSource, refuses_broken_groundtruth_by_line) {
+TEST(TumSource, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
   const SequenceFolder folder;
   folder.three_frames();
-  folder.write("groundtruth.txt", "1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("groundtruth.txt:2"), HasSubstr("nan"))));
+  folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
+  auto source = make_source(folder.uri());
+  EXPECT_THAT(source->groundtruth(), SizeIs(1));
+  EXPECT_THAT(source->info().notes, ElementsAre(HasSubstr("1 title line"), HasSubstr("1 row of nan left out")));
+  folder.write("groundtruth.txt", "1.0 0 0 0 90 45 10\n");
+  source = make_source(folder.uri());
+  EXPECT_THAT(source->groundtruth(), SizeIs(0));
+  EXPECT_THAT(source->info().notes,
+              ElementsAre(AllOf(HasSubstr("ground truth not used: "), HasSubstr("groundtruth.txt:1: 7 columns"))));
+  folder.write("groundtruth.txt", "100001000 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(make_source(folder.uri())->info().notes, ElementsAre(HasSubstr("no pose at the time of the frames")));
 }
 
 TEST(MakeSource, names_the_schemes_it_knows) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 namespace rtd::geometry {
@@ -87,6 +89,13 @@ TEST(TumTrajectory, missing_file_and_folder_are_named) {
       },
       TrajectoryError);
   EXPECT_THROW(read_tum_trajectory(std::filesystem::temp_directory_path()), TrajectoryError);
+}
+
+TEST(FrameStamps, are_in_the_names_of_a_list_without_stamps) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / "rtd_names_only.txt";
+  std::ofstream(file) << "\xEF\xBB\xBFrgb/1305031102.175304.png\r\nrgb/1305031102.211214.png\r\n";
+  EXPECT_EQ(read_frame_stamps(file), (std::vector<std::int64_t>{1305031102175304000, 1305031102211214000}));
+  std::filesystem::remove(file);
 }
 
 TEST(TumTrajectory, keeps_all_rows_as_written_when_asked_to) {

@@ -8,7 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/unit/evaluation/eval_paths.hpp"
+#include "services/evaluation/core/report/run_summary.hpp"
+#include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
@@ -56,15 +57,19 @@ class EvalCommand : public testing::Test {
   std::string truth_, estimate_;
 };
 
-TEST_F(EvalCommand, reads_kitti_with_a_rate_and_names_the_options_without) {
+TEST_F(EvalCommand, reads_kitti_with_a_rate_and_pairs_by_number_without) {
   std::string rows;
   for (int i = 0; i < 20; ++i) rows += "1 0 0 " + std::to_string(i * i) + " 0 1 0 " + std::to_string(i) + " 0 0 1 0\n";
   const std::string file = folder_.write("00.txt", rows);
   const Outcome outcome = run({file, file, "--rate", "10"});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("(20 poses)"));
-  EXPECT_EQ(run({file, file}).code, 2);
-  EXPECT_THAT(run({file, file}).err, AllOf(HasSubstr("00.txt"), HasSubstr("--rate HZ")));
+  EXPECT_EQ(run({file, file}).code, 0);
+  EXPECT_THAT(run({file, file}).err, HasSubstr("note: no stamps: pose i belongs to pose i, at 10 Hz (--rate HZ)"));
+  const std::string stamped = folder_.write("stamped.txt", tum_text(winding_path(20, 0.1)));
+  EXPECT_THAT(run({file, stamped}).out, HasSubstr(" 20\n")) << "all are pairs";
+  EXPECT_EQ(run({file, truth_}).code, 2);
+  EXPECT_THAT(run({file, truth_}).err, AllOf(HasSubstr("00.txt"), HasSubstr("20 poses"), HasSubstr("--rate HZ")));
   const Outcome needless = run({estimate_, truth_, "--rate", "10"});
   EXPECT_EQ(needless.code, 2);
   EXPECT_THAT(needless.err, HasSubstr("both files have stamps"));
@@ -131,6 +136,47 @@ TEST_F(EvalCommand, frame_list_gives_the_coverage_of_frames) {
   EXPECT_EQ(json["coverage"]["frames"], 60);
   EXPECT_EQ(json["coverage"]["tracked"], 50);
   EXPECT_EQ(json["coverage"]["lost_spans"][0]["frames"], 10);
+}
+
+TEST_F(EvalCommand, coverage_of_a_run_is_that_of_its_report) {
+  eval::Run run_of_folder = testing_support::fabricated_run();  // 94 of 100 frames have a pose
+  run_of_folder.frames_left_out = 88;
+  run_record::write_run_json(run_of_folder, folder_.file("run.json"));
+  const std::string truth = folder_.write("truth.txt", tum_text(winding_path(100, 0.1)));
+  const std::string estimate = folder_.write("trajectory.txt", tum_text(online_trajectory(run_of_folder)));
+  const auto json = nlohmann::json::parse(run({estimate, truth, "--json"}).out);
+  EXPECT_EQ(json["coverage"]["of"], "frames");
+  EXPECT_EQ(json["coverage"]["frames"], 188);
+  EXPECT_DOUBLE_EQ(json["coverage"]["fraction"], summarize_run(run_of_folder).coverage);
+  EXPECT_THAT(run({estimate, truth}).out, HasSubstr("coverage               50.00 % (94 of 188 frames)"));
+}
+
+TEST_F(EvalCommand, without_frames_the_share_of_time_is_not_called_coverage) {
+  EXPECT_THAT(run({estimate_, truth_}).out,
+              AllOf(HasSubstr("time with poses        81.36 % of the ground truth's"), Not(HasSubstr("coverage   "))));
+}
+
+TEST_F(EvalCommand, a_title_and_rows_of_nan_are_left_out_and_named) {
+  const std::string rows = "timestamp tx ty tz qx qy qz qw\n99.9 nan nan nan nan nan nan nan\n";
+  const std::string truth = folder_.write("mocap.txt", rows + tum_text(winding_path(60, 0.1)));
+  const Outcome outcome = run({estimate_, truth});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("mocap.txt: 1 title line"), HasSubstr("mocap.txt: 1 row of nan left out")));
+}
+
+TEST_F(EvalCommand, a_few_broken_rows_are_named_and_end_with_exit_3) {
+  const std::string truth = folder_.write("cut.txt", tum_text(winding_path(60, 0.1)) + "105.95 1 2\n");
+  const Outcome outcome = run({estimate_, truth});
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("left out: 1 row that cannot be read, first: "));
+}
+
+TEST_F(EvalCommand, ground_truth_in_millimetres_is_named) {
+  const Trajectory path = winding_path(60, 0.1);
+  const std::string truth = folder_.write("mm.txt", tum_text(moved(path, some_transform(), 1000)));
+  const std::string estimate = folder_.write("m.txt", tum_text(path));
+  EXPECT_THAT(run({estimate, truth}).err, HasSubstr("note: the ground truth seems to be in mm (scale 1000)"));
+  EXPECT_THAT(run({estimate, estimate}).err, IsEmpty());
 }
 
 TEST_F(EvalCommand, offset_moves_the_estimate_in_time) {

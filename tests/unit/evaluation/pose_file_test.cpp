@@ -56,10 +56,9 @@ TEST_F(PoseFileTest, kitti_with_times_takes_one_a_line) {
   refuses(file, "00.txt", "has 2 poses, but there are 3 stamps", {0, more});
 }
 
-TEST_F(PoseFileTest, kitti_without_stamps_or_with_other_rows_is_refused) {
+TEST_F(PoseFileTest, kitti_without_stamps_is_numbered_and_other_rows_are_refused) {
   const std::string one = "1 0 0 1 0 1 0 2 0 0 1 3\n";
-  const std::string file = folder_.write("00.txt", one);
-  refuses(file, "00.txt", "give --times FILE (a stamp in seconds a line, as times.txt of the sequence) or --rate HZ");
+  EXPECT_TRUE(read_pose_file(folder_.write("00.txt", one), {}).numbered);
   refuses(folder_.write("a.txt", one + "1 2 3\n"), "a.txt:2", "3 numbers instead of 12", {10, ""});
   refuses(folder_.write("b.txt", one + "1 0 0 1 0 1 0 x 0 0 1 3\n"), "b.txt:2", "'x' is not a number", {10, ""});
   refuses(folder_.write("c.txt", one + "2 0 0 1 0 1 0 2 0 0 1 3\n"), "c.txt:2", "no rotation", {10, ""});
@@ -90,6 +89,16 @@ TEST_F(PoseFileTest, euroc_columns_may_have_another_order_and_the_title_may_be_a
     EXPECT_NEAR(q.x(), 0.8, 1e-12) << file;
     EXPECT_NEAR(q.w(), 0.6, 1e-12) << file;
   }
+}
+
+TEST_F(PoseFileTest, euroc_titles_may_lack_their_mark_and_rows_of_nan_are_left_out) {
+  const PoseFile read = read_pose_file(
+      folder_.write("a.csv",
+                    "timestamp,p_x,p_y,p_z,q_w,q_x,q_y,q_z\n10,1,2,3,1,0,0,0\n20,nan,nan,nan,nan,nan,nan,nan\n"),
+      {});
+  EXPECT_THAT(read.poses, SizeIs(1));
+  ASSERT_THAT(read.notes, SizeIs(1));
+  EXPECT_THAT(read.notes[0], HasSubstr("1 rows of nan left out"));
 }
 
 TEST_F(PoseFileTest, malformed_euroc_is_refused_with_its_line) {

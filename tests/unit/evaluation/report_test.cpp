@@ -161,6 +161,35 @@ TEST_F(Report, ground_truth_of_another_time_is_a_note) {
   EXPECT_THAT(json()["notes"].dump(), HasSubstr("no pose lies within 0.02 s"));
 }
 
+TEST_F(Report, frames_that_the_source_left_out_count_against_coverage) {
+  record_.frames_left_out = 88;
+  record_.left_out = {{"stamp_backwards", 88}};
+  EXPECT_DOUBLE_EQ(json()["coverage"], 0.5);
+  EXPECT_EQ(json()["frames_given"], 188);
+  EXPECT_EQ(json()["left_out"]["stamp_backwards"], 88);
+  const std::string text = summary_text(record_, summarize_run(record_), "out");
+  EXPECT_THAT(text, AllOf(HasSubstr("188 given, 99 used, 94 with pose  (stamp_backwards 88, camera.late 1)"),
+                          HasSubstr("50.0 %"), HasSubstr(" m over 100 poses  (as published: ")));
+}
+
+TEST_F(Report, two_poses_give_no_ate) {
+  const Trajectory truth = winding_path(100, 0.1);
+  record_.trajectory_path = folder_.write("two.txt", tum_text({truth[10], truth[11]}));
+  EXPECT_TRUE(json()["ate_rmse_m"].is_null());
+  EXPECT_THAT(json()["notes"].dump(), HasSubstr("trajectory: only 2 poses have a true one"));
+}
+
+TEST_F(Report, what_a_restarted_slam_lost_is_named) {
+  const Trajectory truth = winding_path(100, 0.1);
+  record_.trajectory_path = folder_.write("last.txt", tum_text(Trajectory(truth.begin() + 70, truth.end())));
+  EXPECT_THAT(json()["notes"].dump(), Not(HasSubstr("restarted")));
+  record_.processes["slam"].restarts = 1;
+  EXPECT_THAT(json()["notes"].dump(),
+              HasSubstr("slam was restarted: trajectory.txt has only the last 30 poses, from 7.0 "
+                        "s on; the 64 before are in trajectory_online.txt"));
+  EXPECT_DOUBLE_EQ(json()["coverage"], 0.94) << "they had poses";
+}
+
 TEST_F(Report, events_come_first_when_the_run_went_badly) {
   const auto events_before_trajectory = [&] { return page().find("<h2>Events") < page().find("<h2>Trajectory"); };
   EXPECT_FALSE(events_before_trajectory());
@@ -182,7 +211,7 @@ TEST_F(Report, page_is_self_contained) {
 TEST_F(Report, page_shows_every_section) {
   const std::string html = page();
   for (const char* text :
-       {"ATE RMSE", "94.00 %", "94 of 100, 1 dropped", "Trajectory against ground truth", "Error over time",
+       {"ATE RMSE", "94.00 %", "100 given, 99 used, 94 with pose", "Trajectory against ground truth", "Error over time",
         "Static and dynamic points", "Latency", "Stage times", "slam.mapping", "Sample frames",
         "frame 50: 1 kept, 1 removed", "Processes", "peak memory", "camera.late: 1 frames",
         "frames 40 to 44 without pose", "filter restarted", "synthetic:office"}) {
@@ -269,7 +298,7 @@ TEST_F(Report, numbers_that_are_not_finite_do_not_spoil_anything) {
 
 TEST_F(Report, files_are_written_and_parse) {
   const RunSummary summary = write_report(record_, folder_.path());
-  EXPECT_EQ(summary.frames_tracked, 94U);
+  EXPECT_EQ(summary.frames.with_pose, 94U);
   EXPECT_EQ(nlohmann::json::parse(read_text(folder_.file("report.json")))["frames_in"], 100);
   EXPECT_THAT(read_text(folder_.file("report.html")), testing::EndsWith("</html>\n"));
 }

@@ -47,6 +47,27 @@ TEST(Base64, refuses_other_texts) {
   }
 }
 
+TEST(FrameUse, frames_that_were_left_out_count) {
+  run_record::RunRecord run = fabricated_run();  // 100 in, 94 with pose, 1 without answer
+  EXPECT_EQ(run_record::frame_use(run).text(), "100 given, 99 used, 94 with pose");
+  run.frames_left_out = 88;
+  EXPECT_EQ(run_record::frame_use(run).text(), "188 given, 99 used, 94 with pose");
+  EXPECT_DOUBLE_EQ(run_record::frame_use(run).coverage(), 0.5);
+  EXPECT_FALSE(run_record::frame_use(run).too_few());
+  run.frames_left_out = 99;
+  EXPECT_TRUE(run_record::frame_use(run).too_few());
+}
+
+TEST(FrameUse, frames_without_depth_in_range_are_not_used) {
+  run_record::RunRecord run = fabricated_run();
+  run.frames.clear();
+  run.frames_dropped = 0;
+  run.frames_out_of_range = 60;
+  EXPECT_EQ(run_record::frame_use(run).used, 40U);
+  EXPECT_TRUE(run_record::frame_use(run).too_few());
+  EXPECT_FALSE(run_record::frame_use({}).too_few()) << "nothing given, nothing to use";
+}
+
 /// A run with every kind of data, written to run.json in a folder.
 class RunJson : public testing::Test {
  protected:

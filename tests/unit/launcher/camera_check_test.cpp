@@ -36,5 +36,16 @@ TEST(CameraCheckTest, says_what_the_build_supports_when_there_is_none) {
   EXPECT_THAT(findings[0].text, HasSubstr("openni2"));
 }
 
+TEST(CameraCheckTest, a_run_without_its_camera_gets_the_answer_of_the_doctor) {
+  EXPECT_THAT(why_no_camera("", {}), HasSubstr("'rtd doctor' says:\n  cameras: none is plugged in"));
+  const std::vector<camera::FoundCamera> cameras = {{"openni2:1d27/0609@1/5", "PrimeSense", {}, ""},
+                                                    {"openni2:2bc5/0401@1/6", "Astra", {}, "no permission"}};
+  EXPECT_EQ(why_no_camera("", cameras), "");
+  EXPECT_EQ(why_no_camera("1d27/0609@1/5", cameras), "");
+  EXPECT_THAT(why_no_camera("2bc5/0401@1/6", cameras), HasSubstr("(Astra): no permission"));
+  EXPECT_THAT(why_no_camera("1d27/0609@1/9", cameras),
+              HasSubstr("camera: --source openni2:1d27/0609@1/5 (PrimeSense)"));
+}
+
 }  // namespace
 }  // namespace rtd::launcher

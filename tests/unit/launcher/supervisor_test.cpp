@@ -111,6 +111,27 @@ TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
   EXPECT_THAT(restarts("detector"), 0) << "has never given a sign of life";
 }
 
+TEST_F(SupervisorTest, a_camera_that_gave_up_before_its_first_frame_is_not_started_again) {
+  bool served = false;
+  const auto camera = [&served] {
+    return ServicePlan{"camera", {"rtd-camera"}, ServiceRole::kLive, 0, false, {}, [&served] { return served; }};
+  };
+  supervisor.start(camera(), now);
+  served = true;
+  host.end("camera", {1, 0});
+  advance(milliseconds(250));
+  EXPECT_EQ(restarts("camera"), 1) << "it gave frames";
+  served = false;
+  host.end("camera", {0, 11});
+  advance(milliseconds(1000));
+  EXPECT_EQ(restarts("camera"), 2) << "a crash is no decision of the camera";
+  host.end("camera", {1, 0});
+  advance(milliseconds(5000));
+  EXPECT_EQ(restarts("camera"), 2);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+  EXPECT_THAT(reported, Contains("camera died: exit code 1 before its first frame: not started again"));
+}
+
 TEST_F(SupervisorTest, no_service_is_killed_for_the_time_in_which_everything_stood_still) {
   start_all();
   host.signs["slam"] = 1;

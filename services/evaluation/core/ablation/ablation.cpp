@@ -178,6 +178,8 @@ std::optional<Measurement> read_measurement(const std::filesystem::path& folder)
   if (!json.is_object() || !json.contains("frames_in")) return std::nullopt;
   Measurement m;
   m.ate_m = number(json, "/ate_rmse_m");
+  m.ate_poses = number(json, "/ate_poses");
+  m.frames = number(json, "/frames_given");
   m.rpe_m = number(json, "/rpe_trans_rmse_m");
   m.rpe_deg = number(json, "/rpe_rot_rmse_deg");
   m.coverage = number(json, "/coverage");

@@ -61,7 +61,8 @@ struct Measurement {
   std::string source, variant;
   int run = 1;
   std::string failure;  ///< why the run does not count; empty = it counts
-  double ate_m = kUnknown, rpe_m = kUnknown, rpe_deg = kUnknown, coverage = kUnknown;
+  double ate_m = kUnknown, ate_poses = kUnknown, rpe_m = kUnknown, rpe_deg = kUnknown, coverage = kUnknown,
+         frames = kUnknown;
   double precision = kUnknown, recall = kUnknown;  ///< after the first second, of the whole run when it is shorter
   double filter_ms = kUnknown;                     ///< median, ORB extraction included
   double duration_s = 0;                           ///< of the run, for the estimate of the remaining time

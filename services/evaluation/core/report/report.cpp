@@ -30,7 +30,9 @@ std::string number(double value, const char* format, const char* unit) {
 }
 
 std::string ate_text(const std::optional<Evaluation>& evaluation) {
-  return evaluation ? number(evaluation->ate.error_m.rmse, "{:.4f}", " m") : "-";
+  if (!evaluation) return "-";
+  return number(evaluation->ate.error_m.rmse, "{:.4f}", " m") +
+         fmt::format(" over {} poses", evaluation->ate.error_m.count);
 }
 
 std::string both_ates(const RunSummary& summary) {
@@ -38,11 +40,16 @@ std::string both_ates(const RunSummary& summary) {
   return ate_text(summary.final_trajectory) + "  (as published: " + ate_text(summary.online_trajectory) + ")";
 }
 
+/// What the source left out by reason, and where frames were lost on their way.
 std::string lost_places(const Run& run) {
   std::string text;
-  for (const auto& [place, count] : run.drops) {
-    if (count > 0) text += fmt::format("{}{} {:.0f}", text.empty() ? "  (" : ", ", place, count);
-  }
+  const auto add = [&text](const std::string& what, double count) {
+    if (count > 0) text += fmt::format("{}{} {:.0f}", text.empty() ? "  (" : ", ", what, count);
+  };
+  for (const auto& [reason, count] : run.left_out) add(reason, count);
+  for (const auto& [place, count] : run.drops)
+    if (place != "camera.skipped" || run.left_out.empty()) add(place, count);
+  add("no depth in range", static_cast<double>(run.frames_out_of_range));
   return text.empty() ? text : text + ")";
 }
 
@@ -94,6 +101,7 @@ Json stages_json(const RunSummary& summary) {
 void add_accuracy(const RunSummary& summary, Json& report) {
   const Evaluation none, &e = summary.final_trajectory ? *summary.final_trajectory : none;
   report["ate_rmse_m"] = number_or_null(e.ate.error_m.rmse);
+  report["ate_poses"] = e.ate.error_m.count;
   report["rpe_trans_rmse_m"] = number_or_null(e.rpe_per_second.translation_m.rmse);
   report["rpe_rot_rmse_deg"] = number_or_null(e.rpe_per_second.rotation_rad.rmse * kRadToDeg);
   const auto& online = summary.online_trajectory;
@@ -174,6 +182,9 @@ void judge_run(Run& run, const std::function<bool()>& go_on) {
 }
 
 void choose_trajectory(Run& run, const std::string& folder) {
+  if (!existing(folder + "/trajectory_segment_2.txt").empty())
+    run.events.emplace_back(
+        "stamps went back: trajectory.txt has the poses before, trajectory_segment_2.txt those after");
   if (!run.trajectory_path.empty() || run.frames.empty()) return;
   run.trajectory_path = folder + "/trajectory_online.txt";
   run.events.emplace_back("slam left no trajectory.txt: judged by the poses as they were published");
@@ -182,8 +193,7 @@ void choose_trajectory(Run& run, const std::string& folder) {
 std::string summary_text(const Run& run, const RunSummary& summary, const std::string& folder) {
   const auto row = [](const char* name, const std::string& value) { return fmt::format("  {:<12}{}\n", name, value); };
   std::string text = "\n";
-  text += row("frames", fmt::format("{} in, {} with pose, {} without answer{}", run.frames_in, summary.frames_tracked,
-                                    run.frames_dropped, lost_places(run)));
+  text += row("frames", summary.frames.text() + lost_places(run));
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
   text += row("ATE rmse", both_ates(summary));
   if (const Drift* drift = drift_of(summary); drift != nullptr && drift->nearly_constant())
@@ -203,11 +213,11 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
 }
 
 std::string comparison_text(const std::vector<ComparedRun>& runs) {
-  std::string text = fmt::format("\n  {:<28}{:>14}{:>12}\n", "", "ATE rmse", "coverage");
+  std::string text = fmt::format("\n  {:<28}{:>26}{:>11}  frames\n", "", "ATE rmse", "coverage");
   for (const ComparedRun& compared : runs) {
     const RunSummary summary = summarize_run(compared.run);
-    text += fmt::format("  {:<28}{:>14}{:>12}\n", compared.label, ate_text(summary.final_trajectory),
-                        number(100 * summary.coverage, "{:.1f}", " %"));
+    text += fmt::format("  {:<28}{:>26}{:>11}  {}\n", compared.label, ate_text(summary.final_trajectory),
+                        number(100 * summary.coverage, "{:.1f}", " %"), summary.frames.text());
   }
   return text;
 }
@@ -232,8 +242,10 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["filter_mode"] = text_or_null(run.filter_mode);
   report["detector"] = text_or_null(run.detector);
   report["dds"] = text_or_null(run.dds);
+  report["frames_given"] = summary.frames.given;
   report["frames_in"] = run.frames_in;
-  report["frames_tracked"] = summary.frames_tracked;
+  report["frames_used"] = summary.frames.used;
+  report["frames_tracked"] = summary.frames.with_pose;
   report["frames_dropped"] = run.frames_dropped;
   report["coverage"] = number_or_null(summary.coverage);
   add_accuracy(summary, report);
@@ -253,6 +265,8 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["lost_spans"] = lost_json(summary);
   report["drops"] = Json::object();
   for (const auto& [place, count] : run.drops) report["drops"][place] = number_or_null(count);
+  report["left_out"] = Json::object();
+  for (const auto& [reason, count] : run.left_out) report["left_out"][reason] = number_or_null(count);
   report["clocks"] = Json::object();
   for (const run_record::HostClock& host : run.clocks)
     report["clocks"][host.service] = {{"ahead_ms", number_or_null(host.offset_ms)},

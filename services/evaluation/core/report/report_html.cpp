@@ -36,7 +36,7 @@ const char* why_no_error(const RunSummary& summary) {
 Card accuracy_card(const RunSummary& summary) {
   if (!summary.final_trajectory) return {"unknown", "ATE RMSE", why_no_error(summary)};
   const auto& ate = summary.final_trajectory->ate.error_m;
-  std::string detail = "as published: ";
+  std::string detail = fmt::format("over {} poses; as published: ", ate.count);
   detail += summary.online_trajectory ? length_text(summary.online_trajectory->ate.error_m.rmse) : "unknown";
   return {length_text(ate.rmse), "ATE RMSE", detail, Tone::kNeutral};
 }
@@ -63,8 +63,7 @@ Card removed_card(const RunSummary& summary) {
 }
 
 std::string summary_cards(const Run& run, const RunSummary& summary) {
-  const Card coverage{percent_text(summary.coverage), "frames with pose",
-                      fmt::format("{} of {}, {} dropped", summary.frames_tracked, run.frames_in, run.frames_dropped),
+  const Card coverage{percent_text(summary.coverage), "frames with pose", summary.frames.text(),
                       coverage_tone(summary.coverage)};
   const Card speed{number_text(summary.fps, 1, "fps"), "frames per second",
                    number_text(run.duration_s, 1, "s") + " from start to end"};

@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/report/run_summary.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/evaluation/core/report/scene_depth.hpp"
 
@@ -17,7 +20,8 @@ constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
 constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
     "slam.match", "slam.local_map", "slam.pose", "slam.keyframe", "slam.mapping", "slam.total"};
 
-constexpr float kRanMs = 0.01F;  // a shorter time only means that the stage had nothing to do
+constexpr std::size_t kFewestAtePoses = 3;  // two always fit, whatever they are
+constexpr float kRanMs = 0.01F;             // a shorter time only means that the stage had nothing to do
 
 bool is_tracked(const run_record::FrameRecord& frame) {
   return msg::is_measured(frame.tracking.state);
@@ -86,7 +90,9 @@ Trajectory read_or_note(const std::string& what, const std::string& path, std::v
     return {};
   }
   try {
-    return read_tum_trajectory(std::filesystem::path(path));
+    geometry::PoseList list = geometry::read_pose_list(std::filesystem::path(path));
+    for (auto* lines : {&list.notes, &list.damages}) std::ranges::move(*lines, std::back_inserter(notes));
+    return std::move(list.poses);
   } catch (const TrajectoryError& error) {
     notes.push_back(what + " unusable: " + error.what());
     return {};
@@ -101,10 +107,30 @@ std::optional<Evaluation> evaluate_or_note(const std::string& what, const Trajec
     notes.push_back(what + ": no pose lies within 0.02 s of the ground truth");
     return std::nullopt;
   }
+  if (evaluation.ate.error_m.count < kFewestAtePoses) {
+    notes.push_back(fmt::format("{}: only {} poses have a true one, and any {} fit each other: no ATE", what,
+                                evaluation.ate.error_m.count, kFewestAtePoses - 1));
+    return std::nullopt;
+  }
   if (!evaluation.ate.alignment.unique) {
     notes.push_back(what + ": poses lie on one line or point, so the alignment is one of many and the ATE optimistic");
   }
   return evaluation;
+}
+
+/// A slam that was restarted writes the trajectory of its last life.
+void note_lost_part(const Run& run, RunSummary& summary) {
+  const auto slam = run.processes.find("slam");
+  const Trajectory published = online_trajectory(run);
+  if (slam == run.processes.end() || slam->second.restarts == 0 || summary.estimate.empty() || published.empty())
+    return;
+  const std::int64_t first_ns = summary.estimate.front().stamp_ns;
+  const auto before = std::ranges::count_if(published, [&](const StampedPose& p) { return p.stamp_ns < first_ns; });
+  if (before == 0) return;
+  summary.notes.push_back(fmt::format(
+      "slam was restarted: trajectory.txt has only the last {} poses, from {:.1f} s on; the {} before are in "
+      "trajectory_online.txt",
+      summary.estimate.size(), static_cast<double>(first_ns - published.front().stamp_ns) * 1e-9, before));
 }
 
 std::optional<Integrity> integrity_of(const Run& run, const RunSummary& summary) {
@@ -143,11 +169,9 @@ Trajectory online_trajectory(const Run& run) {
 
 RunSummary summarize_run(const Run& run) {
   RunSummary summary;
-  summary.frames_tracked = static_cast<std::uint64_t>(std::ranges::count_if(run.frames, is_tracked));
-  if (run.frames_in > 0) {
-    summary.coverage = static_cast<double>(summary.frames_tracked) / static_cast<double>(run.frames_in);
-    if (run.duration_s > 0) summary.fps = static_cast<double>(run.frames_in) / run.duration_s;
-  }
+  summary.frames = run_record::frame_use(run);
+  summary.coverage = summary.frames.coverage();
+  if (run.frames_in > 0 && run.duration_s > 0) summary.fps = static_cast<double>(run.frames_in) / run.duration_s;
   summary.latency_ms = summarize_times(latencies_ms(run));
   append_stages(
       run, kFilterStageNames, [](const run_record::FrameRecord& f) -> auto& { return f.filter_stage_ms; },
@@ -167,6 +191,8 @@ RunSummary summarize_run(const Run& run) {
   summary.final_trajectory = evaluate_or_note("trajectory", summary.estimate, summary.groundtruth, summary.notes);
   summary.online_trajectory =
       evaluate_or_note("published poses", online_trajectory(run), summary.groundtruth, summary.notes);
+  note_lost_part(run, summary);
+  if (auto unit = other_unit(summary.estimate, summary.groundtruth)) summary.notes.push_back(std::move(*unit));
   summary.integrity = integrity_of(run, summary);
   const Drift* drift = drift_of(summary);
   if (drift != nullptr && drift->nearly_constant()) summary.scene_depth_m = scene_depth_m(run.source);

@@ -51,8 +51,8 @@ struct LostFrames {
 
 /// The numbers of a run, ready to be written. Doubles are NaN where unknown.
 struct RunSummary {
-  std::uint64_t frames_tracked = 0;
-  double coverage = std::numeric_limits<double>::quiet_NaN();  ///< frames with pose / frames in
+  run_record::FrameUse frames;
+  double coverage = std::numeric_limits<double>::quiet_NaN();  ///< frames with pose / frames that the source had
   double fps = std::numeric_limits<double>::quiet_NaN();       ///< frames in / duration of the run
   TimeSummary latency_ms;                                      ///< camera published -> pose ready
   std::vector<StageSummary> stages;

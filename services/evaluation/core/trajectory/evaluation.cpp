@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -113,6 +115,25 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, c
                                    {.offset_s = options.association.offset_s, .scale = evaluation.ate.alignment.scale});
   evaluation.coverage = measure_coverage(estimate, groundtruth, options, frames_ns);
   return evaluation;
+}
+
+std::optional<std::string> other_unit(const Trajectory& estimate, const Trajectory& groundtruth,
+                                      const AteOptions& options) {
+  constexpr double kNear = 1.15, kFits = 0.2;
+  AteOptions rigid = options, similar = options;
+  rigid.alignment = AlignmentKind::kRigid;
+  similar.alignment = AlignmentKind::kSimilarity;
+  const AteResult scaled = ate(estimate, groundtruth, similar);
+  if (!(scaled.error_m.rmse < kFits * ate(estimate, groundtruth, rigid).error_m.rmse)) return std::nullopt;
+  const double scale = scaled.alignment.scale;
+  for (const auto& [factor, unit] : {std::pair{1000.0, "mm"}, {100.0, "cm"}}) {
+    for (const double expected : {factor, 1 / factor}) {
+      if (scale < expected / kNear || scale > expected * kNear) continue;
+      return fmt::format("the {} seems to be in {} (scale {:.4g}): rtd eval --scale fits it, errors in m are wrong",
+                         expected > 1 ? "ground truth" : "estimate", unit, scale);
+    }
+  }
+  return std::nullopt;
 }
 
 Json to_json(const Statistics& s, double factor) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "services/evaluation/core/integrity/drift.hpp"
@@ -55,6 +56,10 @@ struct Evaluation {
 /// span.
 Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, const EvaluationOptions& options = {},
                     const std::optional<std::vector<std::int64_t>>& frames_ns = std::nullopt);
+
+/// Says so when one of the two seems to be in mm or cm: it fits when it is scaled, and not otherwise. Empty else.
+std::optional<std::string> other_unit(const Trajectory& estimate, const Trajectory& groundtruth,
+                                      const AteOptions& options = {});
 
 /// {count, rmse, mean, median, std, min, max}, every error times `factor`; unknown values become null when printed.
 nlohmann::ordered_json to_json(const Statistics& statistics, double factor = 1);

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
@@ -33,7 +34,7 @@ using geometry::StampedPose;
 using geometry::Trajectory;
 using geometry::TrajectoryError;
 
-constexpr std::size_t kKittiColumns = 12;
+constexpr std::size_t kKittiColumns = 12, kFullMatrixColumns = 16;
 constexpr std::size_t kNsDigits = 16;  // seconds have at most 10 before their point
 constexpr const char* kKittiSeparators = " \t\r\v\f";
 constexpr const char* kCsvSeparators = " \t\r,;";
@@ -42,8 +43,11 @@ std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
 }
 
+/// With or without '#', which made for other programs it may lack.
 bool is_euroc_title(const std::string& line) {
-  return line.starts_with('#') && line.find("timestamp") != std::string::npos && line.find(',') != std::string::npos;
+  const auto has = [&](const char* text) { return line.find(text) != std::string::npos; };
+  const bool titled = !line.empty() && (line[0] == '#' || std::isalpha(static_cast<unsigned char>(line[0])) != 0);
+  return titled && has("timestamp") && has(",") && has("p_");
 }
 
 bool is_ns(const std::string& field) {
@@ -70,7 +74,7 @@ void for_each_line(const std::string& text, const std::string& name, const char*
 
 Eigen::Isometry3d kitti_pose(const std::vector<std::string>& fields) {
   constexpr double kMaxError = 0.01;
-  if (fields.size() != kKittiColumns)
+  if (fields.size() != kKittiColumns && fields.size() != kFullMatrixColumns)
     throw std::invalid_argument(std::to_string(fields.size()) + " numbers instead of 12 (the upper 3 x 4 of a pose)");
   Eigen::Matrix<double, 3, 4> rows;
   for (std::size_t i = 0; i < kKittiColumns; ++i)
@@ -90,7 +94,8 @@ struct EurocColumns {
 
 std::vector<std::string> split_title(const std::string& line) {
   std::vector<std::string> names;
-  for (const io::TextLine& part : io::split_lines(line.substr(1) + "\n", "\r,;")) names = part.fields;
+  const std::string title = line.starts_with('#') ? line.substr(1) : line;
+  for (const io::TextLine& part : io::split_lines(title + "\n", "\r,;")) names = part.fields;
   for (std::string& name : names) {
     name.erase(0, std::min(name.size(), name.find_first_not_of(' ')));
     name.resize(std::min(name.size(), name.find_first_of(" [")));
@@ -126,6 +131,14 @@ std::int64_t stamp_of(const std::string& field) {
   return stamp_ns;
 }
 
+/// Whether no value of the pose is nan or infinite.
+bool measured(const std::vector<std::string>& fields, const EurocColumns& columns) {
+  return std::ranges::none_of(columns.at, [&](std::size_t column) {
+    const auto value = column < fields.size() ? io::parse_number(fields[column]) : std::nullopt;
+    return value && !std::isfinite(*value);
+  });
+}
+
 StampedPose euroc_pose(const std::vector<std::string>& fields, const EurocColumns& columns) {
   if (fields.size() <= columns.most()) {
     throw std::invalid_argument(std::to_string(fields.size()) + " columns instead of at least " +
@@ -141,7 +154,7 @@ void require_poses(const Trajectory& trajectory, const std::string& name) {
 }
 
 /// By the first lines: EuRoC's title "#timestamp [ns],..." or stamps in nanoseconds before commas; KITTI's 12 numbers a
-/// line; TUM's format for everything else.
+/// line, or the 16 of a whole matrix; a list of poses for everything else.
 PoseFormat format_of(const std::string& text) {
   if (is_euroc_title(first_line(text))) return PoseFormat::kEuroc;
   const std::size_t begin = text.find_first_not_of("\r\n");
@@ -150,7 +163,9 @@ PoseFormat format_of(const std::string& text) {
   const std::vector<io::TextLine> csv = io::split_lines(line, kCsvSeparators);
   if (csv.empty()) return PoseFormat::kTum;
   if (line.find(',') != std::string::npos && is_ns(csv.front().fields.front())) return PoseFormat::kEuroc;
-  return csv.front().fields.size() == kKittiColumns ? PoseFormat::kKitti : PoseFormat::kTum;
+  const std::vector<std::string>& fields = csv.front().fields;
+  const bool matrix = fields.size() == kKittiColumns || fields.size() == kFullMatrixColumns;
+  return matrix && io::parse_number(fields[1]) ? PoseFormat::kKitti : PoseFormat::kTum;
 }
 
 /// The number of poses in such a text.
@@ -177,15 +192,23 @@ Trajectory read_kitti(const std::string& text, const std::string& name, const st
 
 /// EuRoC's csv: stamps in nanoseconds, columns by the names in the title (p_x or p_RS_R_x [m], q_w, ...; others are
 /// ignored), without title: time, p_x, p_y, p_z, q_w, q_x, q_y, q_z. Throws geometry::TrajectoryError.
-Trajectory read_euroc(const std::string& text, const std::string& name) {
+PoseFile read_euroc(const std::string& text, const std::string& name) {
   const std::string title = first_line(text);
-  const EurocColumns columns = is_euroc_title(title) ? columns_of(title, name) : EurocColumns{};
-  Trajectory trajectory;
-  for_each_line(text, name, kCsvSeparators, [&](const std::vector<std::string>& fields) {
-    geometry::append_in_order(trajectory, euroc_pose(fields, columns));
+  const bool titled = is_euroc_title(title);
+  const EurocColumns columns = titled ? columns_of(title, name) : EurocColumns{};
+  const std::string rest = titled && !title.starts_with('#') ? '#' + text : text;
+  PoseFile file;
+  std::size_t not_finite = 0;
+  for_each_line(rest, name, kCsvSeparators, [&](const std::vector<std::string>& fields) {
+    if (measured(fields, columns)) {
+      geometry::append_in_order(file.poses, euroc_pose(fields, columns));
+    } else {
+      ++not_finite;
+    }
   });
-  require_poses(trajectory, name);
-  return trajectory;
+  require_poses(file.poses, name);
+  if (not_finite > 0) file.notes.push_back(name + ": " + std::to_string(not_finite) + " rows of nan left out");
+  return file;
 }
 
 namespace fs = std::filesystem;
@@ -224,31 +247,41 @@ bool is_recording(const fs::path& file) {
   }
 }
 
-std::vector<std::int64_t> stamps_for(const std::string& name, std::size_t poses, const MissingStamps& given) {
+std::vector<std::int64_t> stamps_for(std::size_t poses, const MissingStamps& given) {
   if (!given.times_file.empty()) return geometry::read_frame_stamps(given.times_file);
-  if (given.rate_hz <= 0) {
-    throw TrajectoryError(name +
-                          ": KITTI's format (12 numbers a line) has no stamps; give --times FILE (a stamp in seconds a "
-                          "line, as times.txt of the sequence) or --rate HZ");
-  }
+  const double rate_hz = given.rate_hz > 0 ? given.rate_hz : kNumberedHz;
   std::vector<std::int64_t> stamps_ns(poses);
-  for (std::size_t i = 0; i < poses; ++i) stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / given.rate_hz);
+  for (std::size_t i = 0; i < poses; ++i) stamps_ns[i] = std::llround(static_cast<double>(i) * 1e9 / rate_hz);
   return stamps_ns;
 }
 
-PoseFile read_text_file(const fs::path& file, const MissingStamps& stamps) {
-  const std::string name = file.string();
-  const std::optional<std::string> text = fs::is_regular_file(file) ? io::read_text(file) : std::nullopt;
-  const PoseFormat format = text ? format_of(*text) : PoseFormat::kTum;
-  if (format == PoseFormat::kEuroc) return {read_euroc(*text, name), false, {}, {}};
-  if (format == PoseFormat::kKitti)
-    return {read_kitti(*text, name, stamps_for(name, count_kitti(*text), stamps)), true, {}, {}};
-  return {geometry::read_tum_trajectory(file), false, {}, {}};  // says what is wrong with a file that cannot be read
+PoseFile read_text_file(const fs::path& path, const MissingStamps& stamps) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const std::string name = path.string();
+  std::string text = fs::is_regular_file(path) ? io::read_text(path).value_or("") : "";
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  const PoseFormat format = format_of(text);
+  if (format == PoseFormat::kEuroc) return read_euroc(text, name);
+  PoseFile file;
+  if (format == PoseFormat::kKitti) {
+    file.poses = read_kitti(text, name, stamps_for(count_kitti(text), stamps));
+    file.took_stamps = stamps.rate_hz > 0 || !stamps.times_file.empty();
+    file.numbered = !file.took_stamps;
+    return file;
+  }
+  // says what is wrong with a file that cannot be read
+  geometry::PoseList list = text.empty() ? geometry::read_pose_list(path) : geometry::read_pose_list(text, name);
+  file.poses = std::move(list.poses);
+  file.notes = std::move(list.notes);
+  file.damages = std::move(list.damages);
+  return file;
 }
 
 PoseFile read_results_file(recordings::Reader& recording, const std::string& topic) {
   RecordedResults recorded = read_recorded_results(recording, topic);
-  PoseFile file{measured_poses(recorded.published), false, std::move(recorded.damages), {}};
+  PoseFile file;
+  file.poses = measured_poses(recorded.published);
+  file.damages = std::move(recorded.damages);
   if (file.poses.empty()) throw TrajectoryError(recording.name() + ": topic " + topic + " has no measured pose");
   file.published = std::move(recorded.published);
   return file;
@@ -262,7 +295,10 @@ PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps
     const auto reader = recordings::open_reader(wanted.file);
     if (const auto results = topic_of_results(*reader, wanted.choice)) return read_results_file(*reader, *results);
     RecordedPoses recorded = read_recorded_poses(*reader, wanted.choice);
-    return {std::move(recorded.poses), false, std::move(recorded.damages), {}};
+    PoseFile file;
+    file.poses = std::move(recorded.poses);
+    file.damages = std::move(recorded.damages);
+    return file;
   }
   if (wanted.chosen && fs::exists(wanted.file))
     throw TrajectoryError(argument + ": topic and child are for recordings (bag, MCAP, .db3), the file is none");

@@ -10,7 +10,10 @@
 
 namespace rtd::eval {
 
-/// The stamps of files that have none (KITTI). At most one of the two.
+/// The rate of KITTI's sequences.
+inline constexpr double kNumberedHz = 10;
+
+/// The stamps of files that have none (KITTI). At most one of the two; with neither, poses count by their number.
 struct MissingStamps {
   double rate_hz = 0;      ///< pose i is of i / rate; 0: not given
   std::string times_file;  ///< stamps in seconds, one a line; empty: not given
@@ -20,8 +23,10 @@ struct MissingStamps {
 struct PoseFile {
   geometry::Trajectory poses;
   bool took_stamps = false;              ///< from MissingStamps
-  std::vector<std::string> damages;      ///< of a recording, one line each
+  std::vector<std::string> damages;      ///< what was lost, one line each
   std::vector<PublishedPose> published;  ///< with states and covariances; only of results of slam (rtd/tracking)
+  std::vector<std::string> notes = {};   ///< what was understood or left out without a loss, one line each
+  bool numbered = false;                 ///< there are no stamps: pose i is at i / kNumberedHz
 };
 
 /// Reads a trajectory in TUM's, KITTI's or EuRoC's format or from a recording (ROS 1 bag, MCAP, .db3),

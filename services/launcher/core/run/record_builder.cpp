@@ -174,9 +174,7 @@ LiveStatus RecordBuilder::live() const {
                                  place.find(".topic.") == std::string::npos;  // it only needs the newest frame
     if (before_the_pose) status.dropped += counted(count);
   }
-  if (const auto camera = services_.find("camera"); camera != services_.end()) {
-    status.camera_message = camera->second.message;
-  }
+  status.camera_message = camera_message();
   if (recent_.empty()) return status;
   const msg::TrackingResult& newest = recent_.back();
   status.tracking = true;
@@ -222,6 +220,9 @@ void RecordBuilder::fill(run_record::RunRecord& record) const {
     if (frame.has_result && seq < record.frames_in) record.frames.push_back(frame.record);
   }
   record.frames_dropped = record.frames_in - record.frames.size();
+  record.frames_left_out = counted(camera_counter(metric::kFramesLeftOut).total());
+  record.frames_out_of_range = counted(camera_counter(metric::kFramesOutOfRange).total());
+  record.left_out = left_out();
   record.drops = drops();
   record.clocks = clocks();
 }
@@ -250,6 +251,21 @@ std::map<std::string, double> RecordBuilder::drops() const {
     }
   }
   return result;
+}
+
+std::map<std::string, double> RecordBuilder::left_out() const {
+  std::map<std::string, double> result;
+  const std::string_view prefix = metric::kLeftOutPrefix;
+  const auto camera = services_.find("camera");
+  if (camera == services_.end()) return result;
+  for (const auto& [name, counter] : camera->second.counters)
+    if (name.starts_with(prefix)) result[name.substr(prefix.size())] = counter.total();
+  return result;
+}
+
+std::string RecordBuilder::camera_message() const {
+  const auto camera = services_.find("camera");
+  return camera == services_.end() ? std::string() : camera->second.message;
 }
 
 RecordBuilder::Counter RecordBuilder::camera_counter(const std::string& name) const {

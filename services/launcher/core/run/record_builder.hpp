@@ -74,6 +74,8 @@ class RecordBuilder {
   /// Frames that the source delivered: the camera's own count, else the frames seen.
   std::uint64_t frames_in() const;
   bool tracked_any() const { return tracked_any_; }  ///< at least one frame got a pose
+  /// What the camera says of itself; at its end the first piece that its source left out.
+  std::string camera_message() const;
   LiveStatus live() const;
   /// The newest message of a degraded service; returned once each time it changes.
   std::optional<std::string> take_notice();
@@ -86,7 +88,7 @@ class RecordBuilder {
   void close();
   /// Frames that were not kept for the report: the store was full.
   std::uint64_t frames_not_kept() const { return not_kept_; }
-  /// Writes frames, frames_in, frames_dropped and drops.
+  /// Writes frames, what was counted of them, drops and clocks.
   void fill(run_record::RunRecord& record) const;
 
  private:
@@ -103,6 +105,7 @@ class RecordBuilder {
 
   static bool disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated);
   std::map<std::string, double> drops() const;
+  std::map<std::string, double> left_out() const;
   std::vector<run_record::HostClock> clocks() const;
   void note_troubles(const msg::ServiceStatus& status);
   Counter camera_counter(const std::string& name) const;

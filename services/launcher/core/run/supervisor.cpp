@@ -159,6 +159,11 @@ void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock 
     report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
     return decide(RunOutcome::kFailed);
   }
+  const bool gave_up = exit.signal == 0 && !child.killed && child.plan.has_served && !child.plan.has_served();
+  if (child.plan.role == ServiceRole::kLive && gave_up) {
+    report(SupervisorEvent::Kind::kGivenUp, child, what + " before its first frame: not started again", exit);
+    return decide(RunOutcome::kFailed);
+  }
   const bool healthy = now - child.started >= options_.healthy_after;
   child.deaths_in_row = healthy ? 1 : child.deaths_in_row + 1;
   if (child.deaths_in_row > options_.max_restarts_in_row) {

@@ -29,6 +29,9 @@ struct ServicePlan {
   bool ends_last = false;  ///< stopped after all others: a recorder still receives their last messages
   /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
+  /// Of a live camera: whether it has ever given a frame. One that gave up before is not started again, because it has
+  /// waited long enough; empty: it is.
+  std::function<bool()> has_served = {};
 };
 
 struct SupervisorOptions {

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/geometry/trajectory.hpp"
+
+namespace rtd::geometry {
+
+/// A trajectory as others write it, and what was left out or understood on the way: one line for people each.
+struct PoseList {
+  Trajectory poses;                ///< stamps strictly increasing
+  std::vector<std::string> notes;  ///< nothing is lost: a title, rows of nan, another unit of the stamps, another order
+  std::vector<std::string> damages;  ///< rows that cannot be read
+};
+
+/// Reads poses of a text with one a line: stamp tx ty tz qx qy qz qw, or stamp and the upper 3 x 4 (or all 4 x 4) of
+/// T_world_body; separated by blanks, commas or semicolons, with or without byte order mark, '#' for comments. The
+/// stamp is in s, ms, us or ns, by its size and steps, or the name of an image that begins with it ("rgb/12.5.png"); of
+/// a list of associations with ground truth ("stamp rgb stamp depth stamp tx ..."), the last one counts. A title and
+/// rows of nan are left out. Where stamps go back the file has several segments: the longest is taken, unless no order
+/// is there, then all by their stamps. Throws TrajectoryError: no poses, or at least as many rows that cannot be read.
+PoseList read_pose_list(const std::string& text, const std::string& name);
+/// Of a file.
+PoseList read_pose_list(const std::filesystem::path& path);
+
+/// The number that a name of an image file is, as "12.5" of "rgb/12.5.png"; the text itself where it is a number.
+std::string stamp_in_name(const std::string& text);
+
+}  // namespace rtd::geometry

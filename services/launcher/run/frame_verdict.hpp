@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/run_record/run_record.hpp"
+
+namespace rtd::launcher {
+
+/// Why most frames of a run were not used: how many were, the commonest cause and what helps. `first_left_out`: the
+/// first piece that the source left out, as the camera describes it; may be empty. Empty when at least half of the
+/// frames were used.
+std::string why_too_few(const run_record::RunRecord& record, const std::string& first_left_out);
+
+}  // namespace rtd::launcher
