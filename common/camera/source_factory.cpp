@@ -105,18 +105,19 @@ RecordingOptions recording_options(const SourceUri& uri) {
   const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
                                                      {"depth", &options.topics.depth},
                                                      {"info", &options.topics.info},
-                                                     {"depth_info", &options.topics.depth_info},
-                                                     {"calibration", &options.calibration_file}};
+                                                     {"depth_info", &options.topics.depth_info}};
   for (const auto& [key, value] : uri.parameters) {
     if (const auto found = known.find(key); found != known.end()) {
       *found->second = value;
+    } else if (key != "fps" && take_calibration_parameter(options.calibration, uri.text, key, value)) {
+      continue;
     } else if (key == "registered") {
       options.registered = parse_flag(uri.text, key, value);
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
     } else {
       throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                        ": knows color, depth, info, calibration, depth_info, registered, tolerance_ms");
+                        ": knows color, depth, info, depth_info, registered, tolerance_ms, " + kCalibrationParameters);
     }
   }
   return options;
