@@ -13,10 +13,10 @@ namespace {
 
 constexpr int kPixelStep = 8;
 constexpr std::uint64_t kFewestPixels = 30;
-constexpr double kNearly = 0.9;                      // a share of the pixels
+constexpr double kMostPixels = 0.9;                  // a share of the pixels
 constexpr double kTooNear_m = 0.5, kTooFar_m = 13;   // for nearly all
 constexpr double kUsual_m = 0.5, kFarIndoors_m = 6;  // of the median
-constexpr double kSensorsReach_m = 15;
+constexpr double kReach_m = 15;
 
 struct Unit {
   double per_metre;
@@ -58,11 +58,11 @@ double DepthFigures::hole_share() const {
 
 std::string DepthFigures::doubt(bool given) const {
   if (pixels_ - holes_ < kFewestPixels) return {};
-  const double low_m = *quantile_m(1 - kNearly), middle_m = *median_m(), high_m = *quantile_m(kNearly);
+  const double low_m = *quantile_m(1 - kMostPixels), middle_m = *median_m(), high_m = *quantile_m(kMostPixels);
   const double farthest_m = *quantile_m(0.99);
   const auto fits = [&](const Unit& unit) {
     const double factor = 1 / (scale_m_ * unit.per_metre);  // of the depths, if this were the unit
-    return middle_m * factor > kUsual_m && middle_m * factor < kFarIndoors_m && farthest_m * factor < kSensorsReach_m;
+    return middle_m * factor > kUsual_m && middle_m * factor < kFarIndoors_m && farthest_m * factor < kReach_m;
   };
   const bool near = high_m < kTooNear_m || (!given && middle_m < kUsual_m);
   const bool far = low_m > kTooFar_m || (!given && middle_m > kFarIndoors_m);
@@ -92,8 +92,8 @@ double float_quantile(const cv::Mat& values, double share) {
 }
 
 bool floats_are_millimetres(const cv::Mat& values) {
-  constexpr double kBeyond = 100;  // m: no depth camera measures it, and renderers show something nearer, too
-  return float_quantile(values, 1 - kNearly) > kBeyond;
+  constexpr double kNoRoom_m = 100;  // m: no depth camera measures it, and renderers show something nearer, too
+  return float_quantile(values, 1 - kMostPixels) > kNoRoom_m;
 }
 
 }  // namespace rtd::camera

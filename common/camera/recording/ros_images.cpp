@@ -18,8 +18,6 @@ namespace rtd::camera {
 namespace {
 
 constexpr const char* kDepthTransport = "compressedDepth";
-constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
-
 constexpr std::uint64_t kMaxPixels = 1U << 24;  // a run of zeros costs nothing: memory needs a limit of its own
 
 /// The numbers of variable length.
@@ -93,20 +91,6 @@ cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
     }
   }
   return depth_m;
-}
-
-/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
-cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
-  cv::Mat depth(depth_m.size(), CV_16UC1);
-  for (int row = 0; row < depth.rows; ++row) {
-    const auto* from = depth_m.ptr<float>(row);
-    auto* to = depth.ptr<std::uint16_t>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      const double units = std::round(from[column] / unit_m);
-      to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
-    }
-  }
-  return depth;
 }
 
 constexpr const char* kDepthCodecs = "compressedDepth (PNG, RVL)";

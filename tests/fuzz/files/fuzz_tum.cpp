@@ -11,7 +11,7 @@
 #include <filesystem>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/frame_lists.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"
 #include "tests/fuzz/files/text_mutation.hpp"

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/folder_source.hpp"
 
 #include <gmock/gmock.h>
 
@@ -146,10 +146,14 @@ TEST(TumSource, names_the_formats_it_reads) {
   folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
   folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
   folder.append("depth.txt", "1.3 depth/f.tiff\n");
+  folder.write("depth/g.bmp", "BM");
+  folder.append("rgb.txt", "1.4 rgb/1.0.png\n");
+  folder.append("depth.txt", "1.4 depth/g.bmp\n");
   const Played played = play(folder);
-  EXPECT_THAT(played.frames, SizeIs(3));
+  ASSERT_THAT(played.frames, SizeIs(4));
+  EXPECT_EQ(played.frames[3].image.depth.at<std::uint16_t>(0, 0), 7500) << "1.5 m";
   EXPECT_EQ(played.counters.of(SkipReason::kDepthUnreadable), 1U);
-  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("f.tiff"), HasSubstr("readable: JPEG and PNG")));
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("g.bmp"), HasSubstr("readable: 16-bit PNG, PGM, TIFF")));
 }
 
 TEST(TumSource, refuses_a_sequence_without_one_good_frame) {
@@ -233,19 +237,22 @@ TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
   EXPECT_FALSE(source->true_pose(900'000'000));
 }
 
-TEST(TumSource, refuses_broken_groundtruth_by_line) {
+TEST(TumSource, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_others) {
   const SequenceFolder folder;
   folder.three_frames();
-  folder.write("groundtruth.txt", "1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("groundtruth.txt:2"), HasSubstr("nan"))));
+  folder.write("groundtruth.txt",
+               "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n1.2 1 0 0 0 0 0 1\n");
+  const auto source = make_source(folder.uri());
+  EXPECT_THAT(source->groundtruth(), SizeIs(2));
+  EXPECT_THAT(source->info().notes, testing::Contains(AllOf(HasSubstr("2 poses of groundtruth.txt"),
+                                                            HasSubstr("2 rows left out, first: line 1 is no pose"))));
 }
 
 TEST(MakeSource, names_the_schemes_it_knows) {
   EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
-  EXPECT_THAT(
-      [] { make_source("rosbag:x"); },
-      ThrowsMessage<SourceError>(HasSubstr("known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
+  EXPECT_THAT([] { make_source("rosbag:x"); },
+              ThrowsMessage<SourceError>(
+                  HasSubstr("known: bag, db3, folder, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
   for (const char* video_nodes : {"v4l2:", "v4l2:/dev/video0,/dev/video2?calibration=c.yaml"}) {
     EXPECT_FALSE(is_live(video_nodes));
     EXPECT_THAT(
