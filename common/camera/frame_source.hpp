@@ -105,7 +105,7 @@ struct SourceInfo {
   double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
   double depth_offset_s = 0;
-  /// Somebody said the depth unit: a calibration, a parameter, a standard. Otherwise it is the usual one.
+  /// The depth unit was given: a calibration, a parameter, a standard. Otherwise it is the usual one.
   bool depth_unit_given = true;
   std::vector<std::string> notes = {};  ///< what the source was taken for, for people
   bool has_imu = false, has_wheels = false;                         ///< frames come with what they measured

@@ -7,13 +7,13 @@
 #include <sstream>
 
 #include "common/camera/folder/folder_source.hpp"
-#include "common/camera/foreign_forms.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/recording_source.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
+#include "common/camera/unread_forms.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
 #include "common/mcap/recording_file.hpp"

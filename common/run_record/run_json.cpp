@@ -115,6 +115,8 @@ Json record_json(const RunRecord& record) {
             {"frames_in", record.frames_in},
             {"frames_dropped", record.frames_dropped},
             {"drops", Json::object()},
+            {"depth_median_m", to_value(record.depth_median_m)},
+            {"depth_holes", to_value(record.depth_holes)},
             {"processes", processes_json(record.processes)},
             {"clocks", Json::array()},
             {"events", record.events},
@@ -177,6 +179,8 @@ RunRecord read_record(const Json& json) {
   from_value(json.at("duration_s"), record.duration_s);
   json.at("frames_in").get_to(record.frames_in);
   json.at("frames_dropped").get_to(record.frames_dropped);
+  if (json.contains("depth_median_m")) from_value(json.at("depth_median_m"), record.depth_median_m);
+  if (json.contains("depth_holes")) from_value(json.at("depth_holes"), record.depth_holes);
   json.at("events").get_to(record.events);
   record.frames = read_frames(json.at("frames"));
   read_lists(json, record);

@@ -85,6 +85,8 @@ struct RunRecord {
   std::uint64_t frames_in = 0;                           ///< frames the source delivered
   std::uint64_t frames_dropped = 0;                      ///< frames in without a TrackingResult
   std::map<std::string, double> drops;                   ///< by place, e.g. "camera.late", "filter.queue"
+  double depth_median_m = 0;                             ///< of the measured pixels; 0 = unknown
+  double depth_holes = 0;                                ///< share of the pixels without a measurement
   std::map<std::string, ProcessUsage> processes;
   std::vector<HostClock> clocks;    ///< of services on other hosts
   std::vector<std::string> events;  ///< restarts, degraded modes, warnings, in order
@@ -95,7 +97,7 @@ struct RunRecord {
 
 /// Whether the source knows which pixels move: a synthetic scene, or a TUM folder with mask/.
 bool has_true_masks(const std::string& source_uri);
-/// The mask folder of a source "tum:FOLDER"; empty for other sources.
+/// The mask folder of a source "tum:FOLDER" or "folder:FOLDER"; empty for other sources.
 std::filesystem::path mask_folder(const std::string& source_uri);
 bool is_synthetic(const std::string& source_uri);
 

@@ -73,7 +73,7 @@ std::string camera_text(const geometry::CameraModel& camera) {
                      size_text(size_of(camera)));
 }
 
-/// Units of a metre of 16-bit depth that nobody names: 5000 where the values tell it apart from millimetres.
+/// Units of a metre of 16-bit depth that no file gives: 5000 where the values cannot be millimetres.
 double units_by_look(const cv::Mat& depth) {
   constexpr double kTumUnits = 5000, kMillimetres = 1000, kSensorsReach_m = 15, kNearlyAll = 0.98;
   int measured = 0, fives = 0;
@@ -167,7 +167,7 @@ FolderSource::FirstImages FolderSource::look_at_first_images() const {
 /// By what the user gave, the folder's own files, the camera that its name means, or its layout's.
 std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages& first) const {
   const fs::path& folder = contents_.folder;
-  if (options_.calibration.has_camera()) return wished_calibration(options_.calibration, folder, first.color_px);
+  if (options_.calibration.has_camera()) return requested_calibration(options_.calibration, folder, first.color_px);
   for (const std::string files : {"calibration.yaml", contents_.layout->calibration})
     for (const std::string& file : find_files(folder, files)) return read_calibration(folder / file, first.color_px);
   if (auto known = known_calibration(folder)) return known;
@@ -206,10 +206,10 @@ void FolderSource::choose_depth_unit(const Calibration& calibration, const First
     choose_float_unit(first.depth);
     return;
   }
-  const std::optional<double>& wished = options_.calibration.depth_factor;
-  info_.depth_unit_given = wished || calibration.depth_factor_given;
-  std::string by = wished ? "?depth_factor=" : calibration.origin;
-  if (wished) info_.depth_scale_m = 1 / *wished;
+  const std::optional<double>& requested = options_.calibration.depth_factor;
+  info_.depth_unit_given = requested || calibration.depth_factor_given;
+  std::string by = requested ? "?depth_factor=" : calibration.origin;
+  if (requested) info_.depth_scale_m = 1 / *requested;
   if (!info_.depth_unit_given) {
     const double usual = contents_.layout->depth_factor;
     by = usual > 0 ? std::string("the layout") : std::string("the images");
@@ -250,9 +250,9 @@ void FolderSource::align_depth(const FirstImages& first) {
 /// Stamps of the frames, their rate, and the true poses in the same time.
 void FolderSource::set_times(const Calibration& calibration) {
   GroundTruth truth = read_ground_truth(contents_, list_, y_up_);
-  const std::optional<double>& wished = options_.calibration.fps;
-  if (list_.numbered || wished) {
-    info_.fps = wished ? *wished : calibration.fps_given ? calibration.fps : contents_.layout->fps;
+  const std::optional<double>& requested = options_.calibration.fps;
+  if (list_.numbered || requested) {
+    info_.fps = requested ? *requested : calibration.fps_given ? calibration.fps : contents_.layout->fps;
     const std::vector<FilePair> before = list_.pairs;
     const bool numbered = list_.numbered;
     apply_rate(list_, info_.fps);
@@ -262,7 +262,7 @@ void FolderSource::set_times(const Calibration& calibration) {
       new_ns.push_back(list_.pairs[i].color.stamp_ns);
     }
     truth.poses = retimed(truth.poses, old_ns, new_ns, numbered ? 0 : kTrueWithinNs);
-    note(fmt::format("times: {:g} frames per second{}", info_.fps, wished ? "" : " (?fps= gives another rate)"));
+    note(fmt::format("times: {:g} frames per second{}", info_.fps, requested ? "" : " (?fps= gives another rate)"));
   } else {
     const auto period_ns = static_cast<double>(median_period_ns(list_.pairs));
     const bool unknown = !calibration.fps_given && period_ns > 0;

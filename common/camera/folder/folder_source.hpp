@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/calibration_wishes.hpp"
+#include "common/camera/calibration_request.hpp"
 #include "common/camera/folder/layouts.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/image_files.hpp"
@@ -23,7 +23,7 @@ class FolderSource final : public PlayedSource {
   struct Options {
     bool masks = false;  ///< also read mask/<colour file name>.png: pixels of moving objects
     std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
-    CalibrationWishes calibration;                    ///< with fps: frames are counted, stamps of lists do not matter
+    CalibrationRequest calibration;                   ///< with fps: frames are counted, stamps of lists do not matter
   };
   /// Throws SourceError: no sequence there, no calibration, no good frame, frames larger than the frame type.
   FolderSource(std::string uri, const std::filesystem::path& folder, Options options);

@@ -198,6 +198,18 @@ std::vector<std::string> files_of(const std::vector<StampedFile>& entries) {
   return files;
 }
 
+/// Both without a gap and as long, but one begins with 0 and the other with 1, for example.
+bool counts_from_another_number(const NamedFrames& color, const NamedFrames& depth) {
+  const auto range = [](const NamedFrames& frames) {
+    const auto [first, last] = std::ranges::minmax(geometry::stamps_of(frames.files));
+    return std::pair(first / kNumberNs, last / kNumberNs - first / kNumberNs + 1);
+  };
+  const auto [color_first, color_span] = range(color);
+  const auto [depth_first, depth_span] = range(depth);
+  const auto count = static_cast<std::int64_t>(color.files.size());
+  return color_first != depth_first && color_span == count && depth_span == count;
+}
+
 }  // namespace
 
 PairList read_associations(const fs::path& folder, const std::string& name, const ListRules& rules) {
@@ -250,8 +262,11 @@ PairList pair_by_names(const std::vector<std::string>& color, const std::vector<
   list.how = "by the numbers in their names";
   list.numbered = true;
   pair_by_number(list, sorted, depths.files);
-  const bool fit = list.pairs.size() * 2 >= std::min(color.size(), depth.size());
-  return fit || color.size() != depth.size() ? list : pair_in_order(color, depth);
+  const bool fit = list.pairs.size() * 2 >= color.size() && !counts_from_another_number(colors, depths);
+  if (fit || color.size() != depth.size()) return list;
+  std::vector<StampedFile> depth_sorted = depths.files;
+  sort_unique(depth_sorted);
+  return pair_in_order(files_of(sorted), files_of(depth_sorted));
 }
 
 void apply_rate(PairList& list, double fps) {

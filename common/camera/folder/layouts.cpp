@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "common/camera/foreign_forms.hpp"
+#include "common/camera/unread_forms.hpp"
 
 namespace rtd::camera {
 namespace {

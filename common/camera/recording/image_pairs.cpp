@@ -8,7 +8,6 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/depth_alignment.hpp"
-#include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/driver_topics.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
@@ -21,16 +20,6 @@
 
 namespace rtd::camera {
 namespace {
-
-constexpr double kNoUnit = -1;  // what depth_unit_m() then gives for floats only
-constexpr double kMillimetresPerMetre = 1000;
-
-/// Of a float image: its values as whole numbers.
-cv::Mat whole_values(const RecordedMessage& depth) {
-  cv::Mat values;
-  decode_depth(depth, 1.0).image.convertTo(values, CV_32F);
-  return values;
-}
 
 double float_unit_of(const RecordedTopic& depth) {
   const auto factor = depth.metadata.find(kDepthFactor);
@@ -126,7 +115,7 @@ class ImagePairs final : public RecordingSource {
  private:
   std::optional<std::int64_t> advance() override;
   std::optional<SourceFrame> decode() override;
-  void look_at_first_images();
+  void look_at_first_images(const RecordingOptions& options);
   void load_calibration(const RecordingOptions& options);
   void load_recorded_camera();
   void take_floats_per_metre(double per_metre);
@@ -155,7 +144,7 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
   float_step_ = float_unit_of(*topic_named(recording, topics_.depth));
   describe_rate(topics_.color);
   try {
-    look_at_first_images();
+    look_at_first_images(options);
     load_calibration(options);
     if (!options.registered) align_depth();
   } catch (const ros::WireError& error) {
@@ -168,7 +157,7 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
   read_first(recording.name());
 }
 
-void ImagePairs::look_at_first_images() {
+void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   const RecordedMessage color = first_of(*recording_, topics_.color), depth = first_of(*recording_, topics_.depth);
   color_ = {
       topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, decode_color(color).image.size(), {}};
@@ -178,12 +167,14 @@ void ImagePairs::look_at_first_images() {
             {}};
   const auto sdk_unit_m = sdk_depth_unit_m(*recording_, topics_.depth);
   info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_step_);
-  floats_ = depth_unit_m(depth, kNoUnit) == kNoUnit;
-  if (floats_ && floats_are_millimetres(whole_values(depth))) take_floats_per_metre(kMillimetresPerMetre);
+  floats_ = has_float_depth(depth);
+  const std::optional<double>& requested = options.calibration.depth_factor;
+  take_floats_per_metre(requested ? *requested : float_step(depth, info_.depth_scale_m) / info_.depth_scale_m);
 }
 
 /// Floats in another unit than ROS's metre.
 void ImagePairs::take_floats_per_metre(double per_metre) {
+  if (!floats_ || per_metre == 1) return;
   float_step_ = info_.depth_scale_m * per_metre;
   info_.notes.push_back(
       fmt::format("depth of {} is taken for 1/{:g} m, although ROS has metres in floats", topics_.depth, per_metre));
@@ -199,16 +190,16 @@ std::optional<geometry::CameraModel> ImagePairs::recorded_camera(const std::stri
 }
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
-  const CalibrationWishes& wishes = options.calibration;
-  if (wishes.has_camera()) {
+  const CalibrationRequest& request = options.calibration;
+  if (request.has_camera()) {
     const double recorded_m = info_.depth_scale_m;
-    apply(wished_calibration(wishes, std::filesystem::path(recording_->name()).parent_path(), color_.size_px), info_);
+    apply(requested_calibration(request, std::filesystem::path(recording_->name()).parent_path(), color_.size_px),
+          info_);
     if (floats_) info_.depth_scale_m = recorded_m;  // floats say what they are
   } else {
     load_recorded_camera();
   }
-  if (!wishes.depth_factor) return;
-  floats_ ? take_floats_per_metre(*wishes.depth_factor) : void(info_.depth_scale_m = 1.0 / *wishes.depth_factor);
+  if (request.depth_factor && !floats_) info_.depth_scale_m = 1.0 / *request.depth_factor;
 }
 
 void ImagePairs::load_recorded_camera() {

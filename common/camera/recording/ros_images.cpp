@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/color_encodings.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
@@ -250,6 +251,19 @@ double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
                           ? ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1")
                           : depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
   return floats ? float_unit_m : kMillimetre;
+}
+
+bool has_float_depth(const RecordedMessage& message) {
+  constexpr double kOfFloats = -1;
+  return depth_unit_m(message, kOfFloats) == kOfFloats;
+}
+
+double float_step(const RecordedMessage& message, double float_unit_m) {
+  constexpr double kMillimetresPerMetre = 1000;
+  if (!has_float_depth(message)) return float_unit_m;
+  cv::Mat whole_values;
+  decode_depth(message, 1.0).image.convertTo(whole_values, CV_32F);
+  return floats_are_millimetres(whole_values) ? kMillimetresPerMetre * float_unit_m : float_unit_m;
 }
 
 msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,

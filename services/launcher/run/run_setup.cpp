@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
@@ -17,6 +18,7 @@
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
@@ -78,14 +80,31 @@ void choose_vendors(RunSetup& setup) {
   }
 }
 
-std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
-  if (camera::is_live(uri)) {
-    camera::check_live_uri(uri);
-    return limit;
-  }
-  const std::uint64_t frames = camera::make_source(uri)->info().frames;
+std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
   if (limit == 0) return frames;
   return frames == 0 ? limit : std::min(frames, limit);
+}
+
+/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
+std::string doubt_about_depth(camera::FrameSource& source) {
+  const std::optional<camera::SourceFrame> first = source.next();
+  if (!first) return {};
+  camera::DepthFigures figures;
+  figures.add(first->image.depth, first->image.depth_scale_m);
+  return figures.doubt(source.info().depth_unit_given);
+}
+
+/// How many frames come, and what the source was taken for.
+void look_at_source(RunSetup& setup) {
+  if (camera::is_live(setup.source)) {
+    camera::check_live_uri(setup.source);
+    setup.total_frames = setup.frames;
+    return;
+  }
+  const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
+  setup.total_frames = limited(source->info().frames, setup.frames);
+  setup.source_notes = source->info().notes;
+  if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.
@@ -232,7 +251,7 @@ RunSetup prepare_run(const RunOptions& options) {
   setup.replay = choose_replay(setup, setup.bus_options.robot);
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
-  setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
+  setup.replay ? void(setup.total_frames = setup.replay.frames) : look_at_source(setup);
   choose_detector(setup);
   choose_map(setup);
   process::make_out_folder(setup.out_dir);

@@ -71,9 +71,9 @@ struct ServiceSettings {
 struct RunOptions {
   std::string source;
   std::string pace = "realtime";
-  service::ConfigSources config;     ///< for any service, with the options of services
-  std::vector<std::string> dds_of;   ///< "SERVICE=VENDOR": another DDS for one service
-  std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
+  service::ConfigSources config;    ///< for any service, with the options of services
+  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
+  std::string detector = "auto";    ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string out_dir;
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser
@@ -112,6 +112,8 @@ struct RunSetup : RunOptions {
   bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
+  std::vector<std::string> source_notes;          ///< what the source was taken for
+  std::string depth_doubt;                        ///< why the depth unit is likely another; empty: it is not
   std::string model_path;                         ///< empty: no detector in this run
   std::string detector_note;                      ///< "YOLOX-nano, Apache-2.0", or "off (why)"
   bool remote_detector = false;                   ///< it runs on another host; the launcher does not start it

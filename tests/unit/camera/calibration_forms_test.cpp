@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/calibration_wishes.hpp"
+#include "common/camera/calibration_request.hpp"
 #include "common/camera/frame_source.hpp"
 
 namespace rtd::camera {
@@ -244,18 +244,18 @@ TEST(CalibrationForms, damaged_texts_end_without_harm) {
   EXPECT_THROW(parse_calibration("{" + std::string(100000, '{'), "x"), SourceError);
 }
 
-TEST(CalibrationWishes, are_read_and_checked) {
-  CalibrationWishes wishes;
-  EXPECT_TRUE(take_calibration_parameter(wishes, "tum:x", "intrinsics", "525,526,319.5,239.5"));
-  expect_camera(wished_calibration(wishes, "", cv::Size(640, 480)), {525, 526, 319.5, 239.5}, {640, 480});
-  EXPECT_TRUE(take_calibration_parameter(wishes, "tum:x", "intrinsics", "525,526,319.5,239.5,320,240"));
-  expect_camera(wished_calibration(wishes, "", cv::Size(640, 480)), {525, 526, 319.5, 239.5}, {320, 240});
-  EXPECT_FALSE(take_calibration_parameter(wishes, "tum:x", "masks", "1"));
+TEST(CalibrationRequest, are_read_and_checked) {
+  CalibrationRequest request;
+  EXPECT_TRUE(take_calibration_parameter(request, "tum:x", "intrinsics", "525,526,319.5,239.5"));
+  expect_camera(requested_calibration(request, "", cv::Size(640, 480)), {525, 526, 319.5, 239.5}, {640, 480});
+  EXPECT_TRUE(take_calibration_parameter(request, "tum:x", "intrinsics", "525,526,319.5,239.5,320,240"));
+  expect_camera(requested_calibration(request, "", cv::Size(640, 480)), {525, 526, 319.5, 239.5}, {320, 240});
+  EXPECT_FALSE(take_calibration_parameter(request, "tum:x", "masks", "1"));
   for (const auto& [key, value] :
        {std::pair("intrinsics", "525,526"), std::pair("intrinsics", "a,b,c,d"), std::pair("depth_factor", "0"),
         std::pair("depth_factor", "mm"), std::pair("fps", "-3")}) {
     const std::string name = key, text = value;
-    const auto take = [&] { take_calibration_parameter(wishes, "tum:x", name, text); };
+    const auto take = [&] { take_calibration_parameter(request, "tum:x", name, text); };
     EXPECT_THAT(take, ThrowsMessage<SourceError>(AllOf(HasSubstr("tum:x"), HasSubstr(text))));
   }
 }

@@ -6,7 +6,7 @@
 #include <cstdlib>
 
 #include "common/camera/folder/folder_source.hpp"
-#include "common/camera/foreign_forms.hpp"
+#include "common/camera/unread_forms.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 
@@ -299,6 +299,17 @@ TEST(Layouts, names_of_capture_scripts_pair) {
   }
 }
 
+TEST(Layouts, numbers_without_leading_zeros_are_in_the_order_of_numbers) {
+  const DataFolder folder;
+  for (int i = 1; i <= 12; ++i) {
+    folder.color("rgb/" + std::to_string(i) + ".png");
+    folder.depth("depth/" + std::to_string(i - 1) + ".png", 1000 + i);
+  }
+  const auto frames = test::play(folder.uri(kIntrinsics));
+  ASSERT_THAT(frames, SizeIs(12));
+  for (int i = 0; i < 12; ++i) EXPECT_NEAR(metres(frames[static_cast<std::size_t>(i)]), 1.001 + 0.001 * i, 1e-9);
+}
+
 TEST(Layouts, calibration_file_gives_camera_rate_and_unit_of_a_tum_folder) {
   const DataFolder folder;
   folder.color("rgb/0.png");
@@ -360,7 +371,7 @@ TEST(Layouts, floats_are_metres_or_millimetres_by_their_size) {
   }
 }
 
-TEST(Layouts, units_that_nobody_names_are_seen_by_the_images) {
+TEST(Layouts, units_that_no_file_gives_are_seen_by_the_images) {
   const DataFolder folder;
   folder.color("rgb/0.png");
   folder.depth("depth/0.png", 20003);

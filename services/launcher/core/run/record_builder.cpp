@@ -223,6 +223,8 @@ void RecordBuilder::fill(run_record::RunRecord& record) const {
   }
   record.frames_dropped = record.frames_in - record.frames.size();
   record.drops = drops();
+  record.depth_median_m = camera_counter(metric::kDepthMedianM).current;
+  record.depth_holes = camera_counter(metric::kDepthHoles).current;
   record.clocks = clocks();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/calibration_wishes.hpp"
+#include "common/camera/calibration_request.hpp"
 
 #include <fmt/format.h>
 
@@ -40,26 +40,26 @@ std::map<std::string, double> parse_intrinsics(const std::string& uri, const std
 
 }  // namespace
 
-bool take_calibration_parameter(CalibrationWishes& wishes, const std::string& uri, const std::string& key,
+bool take_calibration_parameter(CalibrationRequest& request, const std::string& uri, const std::string& key,
                                 const std::string& value) {
   if (key == "calibration") {
-    wishes.file = value;
+    request.file = value;
   } else if (key == "intrinsics") {
-    wishes.intrinsics = parse_intrinsics(uri, value);
+    request.intrinsics = parse_intrinsics(uri, value);
   } else if (key == "depth_factor") {
-    wishes.depth_factor = parse_in(uri, key, value, 1, 1e6);
+    request.depth_factor = parse_in(uri, key, value, 1, 1e6);
   } else if (key == "fps") {
-    wishes.fps = parse_in(uri, key, value, 0.1, 1000);
+    request.fps = parse_in(uri, key, value, 0.1, 1000);
   } else {
     return false;
   }
   return true;
 }
 
-Calibration wished_calibration(const CalibrationWishes& wishes, const std::filesystem::path& folder,
-                               std::optional<cv::Size> image_px) {
-  if (!wishes.intrinsics.empty()) return make_calibration(wishes.intrinsics, "?intrinsics=", image_px);
-  std::filesystem::path file = wishes.file;
+Calibration requested_calibration(const CalibrationRequest& request, const std::filesystem::path& folder,
+                                  std::optional<cv::Size> image_px) {
+  if (!request.intrinsics.empty()) return make_calibration(request.intrinsics, "?intrinsics=", image_px);
+  std::filesystem::path file = request.file;
   std::error_code error;
   if (!std::filesystem::exists(file, error) && std::filesystem::exists(folder / file, error)) file = folder / file;
   return read_calibration(file, image_px);
