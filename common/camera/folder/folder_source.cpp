@@ -105,6 +105,12 @@ std::optional<Calibration> calibration_by_name(const fs::path& folder, std::opti
   return std::nullopt;
 }
 
+/// A path without the folder that it is said of.
+std::string inside(const fs::path& folder, const std::string& path) {
+  const std::string start = (folder / "").string();
+  return path.starts_with(start) ? path.substr(start.size()) : path;
+}
+
 std::int64_t median_period_ns(const std::vector<FilePair>& pairs) {
   std::vector<std::int64_t> periods_ns;
   for (std::size_t i = 1; i < pairs.size(); ++i)
@@ -184,7 +190,7 @@ void FolderSource::calibrate(const FirstImages& first) {
   const Calibration calibration = found ? *found : load_calibration(contents_.folder);
   apply(calibration, info_);
   y_up_ = calibration.y_up;
-  note(fmt::format("camera: {} by {}", camera_text(info_.camera), calibration.origin));
+  note(fmt::format("camera: {} by {}", camera_text(info_.camera), inside(contents_.folder, calibration.origin)));
   if (y_up_) {
     note(
         "fy is negative: the y axis of ICL-NUIM's camera points up. Images are the same, so the positive value is "
@@ -208,7 +214,7 @@ void FolderSource::choose_depth_unit(const Calibration& calibration, const First
   }
   const std::optional<double>& requested = options_.calibration.depth_factor;
   info_.depth_unit_given = requested || calibration.depth_factor_given;
-  std::string by = requested ? "?depth_factor=" : calibration.origin;
+  std::string by = requested ? "?depth_factor=" : inside(contents_.folder, calibration.origin);
   if (requested) info_.depth_scale_m = 1 / *requested;
   if (!info_.depth_unit_given) {
     const double usual = contents_.layout->depth_factor;

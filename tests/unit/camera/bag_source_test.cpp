@@ -328,8 +328,10 @@ TEST(BagSource, plays_the_intact_part_of_a_damaged_bag_and_reports_the_loss) {
 
 TEST(BagSource, names_the_parameters_it_knows) {
   EXPECT_TRUE(refuses("bag:", {"needs a file", "bag:FILE"}));
-  EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'",
-                                          "color, depth, info, calibration, depth_info, registered, tolerance_ms"}));
+  EXPECT_TRUE(
+      refuses("bag:x?colour=/a",
+              {"unknown parameter 'colour'",
+               "color, depth, info, depth_info, registered, tolerance_ms, calibration, depth_factor, intrinsics"}));
   EXPECT_TRUE(refuses("bag:/nowhere.bag", {"/nowhere.bag cannot be read"}));
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -110,6 +111,29 @@ TEST(DepthFormats, read_exr_without_compression) {
   const cv::Mat values = ramp(CV_32FC1);
   for (const char* const channel : {"Z", "Y", "R", "depth.Z"})
     EXPECT_TRUE(same(decode_depth_values(exr_of(values, channel)).pixels, values)) << channel;
+}
+
+TEST(DepthFormats, read_exr_as_opencv_writes_it) {
+  setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 1);
+  const cv::Mat values = ramp(CV_32FC1, 64, 50);
+  for (const int compression : {cv::IMWRITE_EXR_COMPRESSION_NO, cv::IMWRITE_EXR_COMPRESSION_RLE,
+                                cv::IMWRITE_EXR_COMPRESSION_ZIPS, cv::IMWRITE_EXR_COMPRESSION_ZIP}) {
+    for (const int type : {cv::IMWRITE_EXR_TYPE_FLOAT, cv::IMWRITE_EXR_TYPE_HALF}) {
+      Bytes bytes;
+      try {
+        cv::imencode(".exr", values, bytes, {cv::IMWRITE_EXR_COMPRESSION, compression, cv::IMWRITE_EXR_TYPE, type});
+      } catch (const cv::Exception&) {
+        GTEST_SKIP() << "this OpenCV writes no EXR";
+      }
+      const auto read = decode_depth_values(bytes);
+      ASSERT_EQ(read.problem, "") << compression;
+      const double largest = cv::norm(read.pixels, values, cv::NORM_INF);
+      EXPECT_LE(largest, type == cv::IMWRITE_EXR_TYPE_HALF ? 4e-3 : 0) << compression;
+    }
+  }
+  Bytes piz;
+  cv::imencode(".exr", values, piz, {cv::IMWRITE_EXR_COMPRESSION, cv::IMWRITE_EXR_COMPRESSION_PIZ});
+  EXPECT_THAT(decode_depth_values(piz).problem, HasSubstr("ZIP"));
 }
 
 TEST(DepthFormats, read_the_number_types_of_npy) {
