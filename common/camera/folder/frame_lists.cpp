@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "common/camera/folder/frame_names.hpp"
@@ -45,12 +46,28 @@ SkippedInput malformed(const fs::path& file, const io::TextLine& line, const std
   return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
 }
 
+std::string joined_words(std::span<const std::string> words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+/// The columns of a list with commas between them, else the words of the line: names may have blanks.
+std::vector<std::string> columns_of(const io::TextLine& line) {
+  if (line.fields[0].find(',') == std::string::npos) return line.fields;
+  std::vector<std::string> columns;
+  for (const io::TextLine& split : io::split_lines(joined_words(line.fields), ",")) columns = split.fields;
+  for (std::string& column : columns) column.erase(0, column.find_first_not_of(' '));
+  return columns;
+}
+
 std::vector<StampedFile> read_list(const fs::path& file, std::vector<SkippedInput>& skipped) {
   std::vector<StampedFile> entries;
   for (const io::TextLine& line : read_lines(file)) {
-    const auto stamp_ns = stamp_of(line.fields[0], at_line(file, line.number));
-    if (stamp_ns && line.fields.size() == 2) {
-      entries.push_back({*stamp_ns, line.fields[1]});
+    const std::vector<std::string> columns = columns_of(line);
+    const auto stamp_ns = columns.empty() ? std::nullopt : stamp_of(columns[0], at_line(file, line.number));
+    if (stamp_ns && columns.size() > 1) {
+      entries.push_back({*stamp_ns, joined_words(std::span(columns).subspan(1))});
     } else {
       skipped.push_back(malformed(file, line, "stamp file"));
     }
@@ -69,10 +86,15 @@ std::vector<FilePair> read_four_columns(const fs::path& file, std::vector<Skippe
   std::vector<FilePair> pairs;
   for (const io::TextLine& line : read_lines(file)) {
     const std::string where = at_line(file, line.number);
-    const auto first_ns = stamp_of(line.fields[0], where);
-    const auto second_ns = line.fields.size() == 4 ? stamp_of(line.fields[2], where) : std::nullopt;
+    const std::vector<std::string> columns = columns_of(line);
+    const std::span<const std::string> words(columns);
+    std::size_t second = 2;  // the second stamp: the first name may have blanks
+    while (second < words.size() && !io::parse_number(words[second])) ++second;
+    const auto first_ns = words.empty() ? std::nullopt : stamp_of(words[0], where);
+    const auto second_ns = second + 1 < words.size() ? stamp_of(words[second], where) : std::nullopt;
     if (first_ns && second_ns) {
-      pairs.push_back(colour_first({{*first_ns, line.fields[1]}, {*second_ns, line.fields[3]}}));
+      pairs.push_back(colour_first({{*first_ns, joined_words(words.subspan(1, second - 1))},
+                                    {*second_ns, joined_words(words.subspan(second + 1))}}));
     } else {
       skipped.push_back(malformed(file, line, "stamp rgb_file stamp depth_file"));
     }
@@ -159,6 +181,7 @@ void pair_by_time(PairList& list, const std::vector<StampedFile>& color, std::ve
   sort_unique(depth);
   const std::vector<geometry::StampPair> found =
       geometry::associate(geometry::stamps_of(color), geometry::stamps_of(depth), tolerance_ns);
+  list.depth_alone = depth.size() - found.size();
   auto pair = found.begin();
   for (std::size_t i = 0; i < color.size(); ++i) {
     if (pair != found.end() && pair->first == i) {
@@ -185,7 +208,7 @@ void pair_by_number(PairList& list, const std::vector<StampedFile>& color, std::
 }
 
 PairList pair_in_order(const std::vector<std::string>& color, const std::vector<std::string>& depth) {
-  PairList list{{}, {}, true, "in the order of their names"};
+  PairList list{{}, {}, 0, true, "in the order of their names"};
   for (std::size_t i = 0; i < std::min(color.size(), depth.size()); ++i)
     list.pairs.push_back({{0, color[i]}, {0, depth[i]}});
   number_in_order(list.pairs);
@@ -213,7 +236,7 @@ bool counts_from_another_number(const NamedFrames& color, const NamedFrames& dep
 }  // namespace
 
 PairList read_associations(const fs::path& folder, const std::string& name, const ListRules& rules) {
-  PairList list{{}, {}, false, "by " + name};
+  PairList list{{}, {}, 0, false, "by " + name};
   std::vector<FilePair> pairs = read_four_columns(folder / name, list.skipped);
   list.numbered = rules.count_frames || are_numbers(pairs);
   if (rules.count_frames) number_in_order(pairs);
@@ -224,7 +247,7 @@ PairList read_associations(const fs::path& folder, const std::string& name, cons
 
 PairList read_two_lists(const fs::path& folder, const std::string& color, const std::string& depth,
                         const ListRules& rules) {
-  PairList list{{}, {}, false, "by the stamps of " + color + " and " + depth};
+  PairList list{{}, {}, 0, false, "by the stamps of " + color + " and " + depth};
   const std::vector<StampedFile> colors = read_list(folder / color, list.skipped);
   const std::vector<StampedFile> depths = read_list(folder / depth, list.skipped);
   if (rules.count_frames && falls(color_stamps(colors)) > 0 && colors.size() == depths.size())

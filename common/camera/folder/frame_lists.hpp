@@ -26,8 +26,9 @@ struct FilePair {
 struct PairList {
   std::vector<FilePair> pairs;  ///< colour stamps strictly increasing
   std::vector<SkippedInput> skipped;
-  bool numbered = false;  ///< the stamps are numbers of frames, as seconds: a rate makes times of them
-  std::string how;        ///< "by associations.txt": for people
+  std::uint64_t depth_alone = 0;  ///< depth images that no colour image was found for
+  bool numbered = false;          ///< the stamps are numbers of frames, as seconds: a rate makes times of them
+  std::string how;                ///< "by associations.txt": for people
 };
 
 /// What the folder's lists are read with.

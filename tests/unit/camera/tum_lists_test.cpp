@@ -47,6 +47,25 @@ TEST(ReadPairs, accepts_associations_that_name_depth_first) {
   EXPECT_EQ(list.pairs[0].color.stamp_ns, 1'010'000'000);
 }
 
+TEST(ReadPairs, reads_byte_order_marks_commas_and_blanks_in_names) {
+  const SequenceFolder folder;
+  folder.write("rgb.txt",
+               "\xEF\xBB\xBF"
+               "1.0,rgb/left 1.png\r\n1.1, rgb/left 2.png\r\n");
+  folder.write("depth.txt", "1.0 depth/left 1.png\n1.1 depth/left 2.png\n");
+  const PairList list = read_pairs(folder.path());
+  ASSERT_THAT(list.pairs, SizeIs(2));
+  EXPECT_EQ(list.pairs[0].color.file, "rgb/left 1.png");
+  EXPECT_EQ(list.pairs[1].color.file, "rgb/left 2.png");
+  EXPECT_EQ(list.pairs[1].depth.file, "depth/left 2.png");
+  folder.write("associations.txt", "1.0 rgb/left 1.png 1.01 depth/left 1.png\n1.1,rgb/b.png,1.1,depth/b.png\n");
+  const PairList associated = read_pairs(folder.path());
+  ASSERT_THAT(associated.pairs, SizeIs(2));
+  EXPECT_EQ(associated.pairs[0].color.file, "rgb/left 1.png");
+  EXPECT_EQ(associated.pairs[0].depth.file, "depth/left 1.png");
+  EXPECT_EQ(associated.pairs[1].depth.file, "depth/b.png");
+}
+
 TEST(ReadPairs, counts_stamps_that_go_back_or_repeat) {
   const SequenceFolder folder;
   folder.write("rgb.txt", "1.0 a\n1.1 b\n1.1 c\n1.05 d\n1.2 e\n");
