@@ -10,6 +10,7 @@
 #include <map>
 #include <vector>
 
+#include "common/camera/calibration_forms.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -58,6 +59,18 @@ const std::vector<std::string>& coefficient_names(geometry::Lens lens) {
   return lens == geometry::Lens::kFisheye ? fisheye : brown;
 }
 
+SourceError out_of_range(const std::string& where, const std::string& key, const std::string& value) {
+  const KeyRule& rule = key_rules().at(key);
+  return SourceError(
+      fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, value, rule.min, rule.max));
+}
+
+/// NaN is not.
+bool in_range(const std::string& key, double value) {
+  const KeyRule& rule = key_rules().at(key);
+  return value >= rule.min && value <= rule.max;
+}
+
 std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::string& origin) {
   const std::string where = origin + ":" + std::to_string(line.number);
   std::string joined;
@@ -65,22 +78,25 @@ std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::
   const std::size_t colon = joined.find(':');
   if (colon == std::string::npos) throw SourceError(where + ": expected 'key: value' with the keys " + kAllowedKeys);
   const std::string key = joined.substr(0, colon), value_text = joined.substr(colon + 1);
-  const auto rule = key_rules().find(key);
-  if (rule == key_rules().end()) throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys);
-  const std::optional<double> value = io::parse_number(value_text);
-  if (!value || !std::isfinite(*value) || *value < rule->second.min || *value > rule->second.max) {
-    throw SourceError(fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, value_text,
-                                  rule->second.min, rule->second.max));
+  if (key_rules().count(key) == 0) {
+    throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys +
+                      "; forms of other programs that are read: " + kCalibrationForms);
   }
+  const std::optional<double> value = io::parse_number(value_text);
+  if (!value || !in_range(key, *value)) throw out_of_range(where, key, value_text);
   return {key, *value};
 }
 
-Calibration from_values(std::map<std::string, double>& values, const std::string& origin) {
+void require_keys(const std::map<std::string, double>& values, const std::string& origin) {
   for (const auto& [key, rule] : key_rules()) {
     if (rule.needed && values.count(key) == 0) {
       throw SourceError(origin + ": key '" + key + "' is missing; keys: " + kAllowedKeys);
     }
   }
+}
+
+Calibration from_values(std::map<std::string, double> values, const std::string& origin) {
+  require_keys(values, origin);
   check_frame_size(values["width"], values["height"], origin);
   geometry::CameraModel::Parameters parameters;
   parameters.fx = values["fx"];
@@ -98,8 +114,11 @@ Calibration from_values(std::map<std::string, double>& values, const std::string
   parameters.height = static_cast<int>(values["height"]);
   Calibration calibration;
   calibration.camera = geometry::CameraModel(parameters);
-  if (values.count("depth_factor") != 0) calibration.depth_scale_m = 1.0 / values["depth_factor"];
-  if (values.count("fps") != 0) calibration.fps = values["fps"];
+  calibration.depth_factor_given = values.count("depth_factor") != 0;
+  calibration.fps_given = values.count("fps") != 0;
+  if (calibration.depth_factor_given) calibration.depth_scale_m = 1.0 / values["depth_factor"];
+  if (calibration.fps_given) calibration.fps = values["fps"];
+  calibration.origin = origin;
   calibration.readout_s = values["readout_s"];
   calibration.depth_offset_s = values["depth_offset_s"];
   return calibration;
@@ -152,7 +171,7 @@ std::optional<KnownCamera> known_camera(const std::string& name) {
 
 void apply(const Calibration& calibration, SourceInfo& info) {
   info.camera = calibration.camera;
-  info.depth_scale_m = calibration.depth_scale_m;
+  if (calibration.depth_factor_given || info.depth_scale_m <= 0) info.depth_scale_m = calibration.depth_scale_m;
   info.readout_s = calibration.readout_s;
   info.depth_offset_s = calibration.depth_offset_s;
 }
@@ -167,7 +186,22 @@ void check_frame_size(double width, double height, const std::string& origin) {
                   origin, width, height));
 }
 
-Calibration parse_calibration(const std::string& text, const std::string& origin) {
+Calibration make_calibration(const std::map<std::string, double>& given, const std::string& origin,
+                             std::optional<cv::Size> image_px) {
+  std::map<std::string, double> values = given;
+  const bool y_up = values.count("fy") != 0 && values["fy"] < 0;
+  if (y_up) values["fy"] = -values["fy"];
+  if (values.count("width") == 0 && image_px) values.insert({{"width", image_px->width}, {"height", image_px->height}});
+  for (const auto& [key, value] : values)
+    if (!in_range(key, value)) throw out_of_range(origin, key, fmt::format("{:g}", value));
+  Calibration calibration = from_values(std::move(values), origin);
+  calibration.y_up = y_up;
+  return calibration;
+}
+
+Calibration parse_calibration(const std::string& text, const std::string& origin, std::optional<cv::Size> image_px) {
+  if (const std::optional<CalibrationValues> other = read_calibration_form(text, origin))
+    return make_calibration(other->values, origin + " (" + other->form + ")", image_px);
   std::map<std::string, double> values;
   for (const io::TextLine& line : io::split_lines(text)) {
     if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive
@@ -175,13 +209,13 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
       throw SourceError(origin + ":" + std::to_string(line.number) + ": key '" + entry.first + "' occurs twice");
     }
   }
-  return from_values(values, origin);
+  return from_values(std::move(values), origin);
 }
 
-Calibration read_calibration(const std::string& file) {
+Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px) {
   const std::optional<std::string> text = io::read_text(file);
-  if (!text) throw SourceError("calibration " + file + " cannot be read");
-  return parse_calibration(*text, file);
+  if (!text) throw SourceError("calibration " + file.string() + " cannot be read");
+  return parse_calibration(*text, file.string(), image_px);
 }
 
 std::optional<int> tum_family(const std::filesystem::path& folder) {
@@ -192,15 +226,20 @@ bool is_bonn_name(const std::string& folder_name) {
   return folder_name.starts_with("rgbd_bonn_");
 }
 
+std::optional<Calibration> known_calibration(const std::filesystem::path& folder) {
+  const std::optional<KnownCamera> known = in_innermost(std::filesystem::absolute(folder), known_camera);
+  if (!known) return std::nullopt;
+  return parse_calibration(known->text, "config/cameras/" + known->file);
+}
+
 Calibration load_calibration(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.yaml";
   if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
-  if (const std::optional<KnownCamera> known = in_innermost(std::filesystem::absolute(folder), known_camera))
-    return parse_calibration(known->text, "config/cameras/" + known->file);
+  if (std::optional<Calibration> known = known_calibration(folder)) return *known;
   throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
                     " with one 'key: value' a line, keys " + kAllowedKeys +
-                    "; or name the folder after its TUM camera (freiburg1, freiburg2, freiburg3) or "
-                    "its Bonn sequence (rgbd_bonn_NAME)");
+                    "; or give ?calibration=FILE or ?intrinsics=fx,fy,cx,cy; or name the folder after its TUM camera "
+                    "(freiburg1, freiburg2, freiburg3) or its Bonn sequence (rgbd_bonn_NAME)");
 }
 
 std::string to_yaml(const Calibration& calibration) {

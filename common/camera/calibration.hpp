@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <string>
 
@@ -10,25 +12,37 @@
 
 namespace rtd::camera {
 
-/// The content of a calibration.yaml.
+/// The content of a calibration.yaml, or of what another program writes in its place.
 struct Calibration {
   geometry::CameraModel camera;
   double depth_scale_m = 1.0 / 5000.0;  ///< metres of one depth unit; the file gives its inverse, depth_factor
   double fps = 30.0;                    ///< Hz
   double readout_s = 0;       ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   double depth_offset_s = 0;  ///< added to the difference of the stamps of depth and colour, s
+  std::string origin;         ///< "orb2.yaml (ORB-SLAM2 settings)": for people
+  bool depth_factor_given = false;  ///< the file says it
+  bool fps_given = false;
+  bool y_up = false;  ///< fy was negative: true poses belong to a camera whose y axis points up
 };
 
 /// Reads "key: value" lines with the keys width height fx fy cx cy (needed) fisheye k1 k2 p1 p2 k3 k4 k5 k6
-/// depth_factor fps readout_s depth_offset_s. Throws SourceError naming `origin`, line and fix: unknown or doubled key,
-/// not a finite number, out of range, size above the frame type's.
-Calibration parse_calibration(const std::string& text, const std::string& origin);
+/// depth_factor fps readout_s depth_offset_s, or a form of calibration_forms.hpp. `image_px` is the size where the text
+/// has none. Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out of
+/// range, size above the frame type's or not known.
+Calibration parse_calibration(const std::string& text, const std::string& origin,
+                              std::optional<cv::Size> image_px = std::nullopt);
 
 /// The same of a file. Throws SourceError also when it cannot be read.
-Calibration read_calibration(const std::string& file);
+Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px = std::nullopt);
+
+/// The pinhole camera of these values; `origin` is for messages. A negative fy is taken for the positive one. Throws
+/// SourceError.
+Calibration make_calibration(const std::map<std::string, double>& values, const std::string& origin,
+                             std::optional<cv::Size> image_px);
 
 struct SourceInfo;
-/// What the calibration says about a source; neither its rate nor anything else changes.
+/// What the calibration says about a source; neither its rate nor anything else changes. A depth unit that is known
+/// stays unless the calibration gives one.
 void apply(const Calibration& calibration, SourceInfo& info);
 
 /// Throws SourceError naming `origin` for images larger than the frame type.
@@ -38,6 +52,9 @@ void check_frame_size(double width_px, double height_px, const std::string& orig
 /// folder first (freiburg1 or fr1, ..., rgbd_bonn_...; the values of config/cameras/, compiled in). Throws SourceError
 /// with what to write.
 Calibration load_calibration(const std::filesystem::path& folder);
+
+/// The calibration of the camera that the path names; empty when it names none.
+std::optional<Calibration> known_calibration(const std::filesystem::path& folder);
 
 /// 1, 2 or 3 when the path names a TUM camera family, the innermost folder first.
 std::optional<int> tum_family(const std::filesystem::path& folder);

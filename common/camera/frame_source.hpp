@@ -114,7 +114,10 @@ struct SourceInfo {
   double readout_s = 0;      ///< of the colour image's rolling shutter, first row to last, s; 0 = none or unknown
   /// What the device adds to the difference of the stamps of depth and colour, s; 0 = nothing or unknown.
   double depth_offset_s = 0;
-  std::vector<std::string> notes = {};       ///< what people should know of its data: a ground truth that is not used
+  /// The depth unit was given: a calibration, a parameter, a standard. Otherwise it is the usual one.
+  bool depth_unit_given = true;
+  std::vector<std::string> notes = {};       ///< what the source was taken for, for people
+  std::vector<std::string> remarks = {};     ///< what is wrong with it although it is played: a ground truth not used
   bool has_imu = false, has_wheels = false;  ///< frames come with what they measured
   Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
 };

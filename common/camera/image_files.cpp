@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "common/camera/folder/depth_formats.hpp"
 #include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
@@ -86,16 +88,38 @@ ImageRead decode_depth(Bytes encoded, const std::string& name) {
   return result;
 }
 
+cv::Mat quantize_depth(const cv::Mat& values, double step) {
+  constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
+  cv::Mat depth(values.size(), CV_16UC1);
+  for (int row = 0; row < depth.rows; ++row) {
+    const auto* from = values.ptr<float>(row);
+    auto* to = depth.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth.cols; ++column) {
+      const double units = std::round(from[column] / step);
+      to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
+    }
+  }
+  return depth;
+}
+
 ImageRead read_color(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file);
-  return bytes ? decode_color(*bytes, file.string())
-               : refuse(SkipReason::kColorUnreadable, file.string(), "cannot be read");
+  if (!bytes) return refuse(SkipReason::kColorUnreadable, file.string(), "cannot be read");
+  if (!to_view(*bytes).starts_with("P6")) return decode_color(*bytes, file.string());
+  vision::DecodedImage decoded = decode_color_values(*bytes);
+  if (!decoded.problem.empty()) return refuse(SkipReason::kColorUnreadable, file.string(), decoded.problem);
+  return {std::move(decoded.pixels), {}};
 }
 
 ImageRead read_depth(const std::filesystem::path& file) {
   const auto bytes = read_bytes(file);
-  return bytes ? decode_depth(*bytes, file.string())
-               : refuse(SkipReason::kDepthUnreadable, file.string(), "cannot be read");
+  if (!bytes) return refuse(SkipReason::kDepthUnreadable, file.string(), "cannot be read");
+  const bool known = vision::format_of(*bytes) != vision::ImageFormat::kUnknown;
+  if (bytes->empty() || known) return decode_depth(*bytes, file.string());
+  vision::DecodedImage decoded = decode_depth_values(*bytes);
+  if (!decoded.problem.empty()) return refuse(SkipReason::kDepthUnreadable, file.string(), decoded.problem);
+  if (decoded.pixels.type() == CV_16UC1) drop_saturated(decoded.pixels);
+  return {std::move(decoded.pixels), {}};
 }
 
 }  // namespace rtd::camera

@@ -18,15 +18,20 @@ struct ImageRead {
   std::optional<SkippedInput> problem;
 };
 
-/// PNG or JPEG as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey).
+/// PNG, JPEG or PPM as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey).
 ImageRead read_color(const std::filesystem::path& file);
 
-/// 16-bit PNG as CV_16UC1. 65535 (saturated) becomes 0, "no measurement". Other pixel types are refused by name.
+/// Depth in one of kDepthFormats (folder/depth_formats.hpp) as CV_16UC1, or as CV_32FC1 in the file's own unit. 65535
+/// (saturated) of 16 bits becomes 0, "no measurement". Other pixel types are refused by name.
 ImageRead read_depth(const std::filesystem::path& file);
 
-/// The same from memory; `name` is for messages.
+/// PNG or JPEG, and 16-bit PNG, from memory; `name` is for messages.
 ImageRead decode_color(std::span<const std::uint8_t> encoded, const std::string& name);
 ImageRead decode_depth(std::span<const std::uint8_t> encoded, const std::string& name);
+
+/// CV_32FC1 -> CV_16UC1 in units of `step`, which is in the unit of the values; NaN, infinity, negative and what does
+/// not fit become 0.
+cv::Mat quantize_depth(const cv::Mat& values, double step);
 
 /// 65535 -> 0 in a CV_16UC1 image.
 void drop_saturated(cv::Mat& depth);

@@ -6,13 +6,14 @@
 #include <filesystem>
 #include <sstream>
 
+#include "common/camera/folder/folder_source.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/recording_source.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/unread_forms.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -35,6 +36,8 @@ void refuse_video_nodes(const std::string& text) {
 SourceUri parse_source_uri(const std::string& text) {
   refuse_video_nodes(text);
   const std::size_t colon = text.find(':');
+  if (const std::string advice = advice_for_file(text.substr(0, text.find('?'))); !advice.empty())
+    throw SourceError(advice);
   if (colon == std::string::npos || colon == 0) {
     throw SourceError("source '" + text + "' has no scheme; write " + all_source_forms());
   }
@@ -71,10 +74,26 @@ bool parse_flag(const std::string& uri, const std::string& key, const std::strin
   return value == "1";
 }
 
+namespace {
+
+/// Lists of the form that tum: is named after.
+bool has_tum_lists(const std::filesystem::path& folder) {
+  const auto has = [&](const char* list) { return std::filesystem::exists(folder / list); };
+  return has("associations.txt") || (has("rgb.txt") && has("depth.txt"));
+}
+
+std::string folder_scheme(const std::filesystem::path& folder) {
+  if (recordings::holds_recording(folder)) return "mcap:";
+  return has_tum_lists(folder) ? "tum:" : "folder:";
+}
+
+}  // namespace
+
 std::string complete_uri(const std::string& source) {
-  if (source.find(':') != std::string::npos) return source;
-  const std::filesystem::path path = source;
-  if (std::filesystem::is_directory(path)) return (recordings::holds_recording(path) ? "mcap:" : "tum:") + source;
+  const std::filesystem::path path = source.substr(0, source.find('?'));
+  const bool has_scheme = path.string().find(':') != std::string::npos;
+  if (has_scheme || !advice_for_file(path).empty()) return source;
+  if (std::filesystem::is_directory(path)) return folder_scheme(path) + source;
   if (io::is_packed_name(path)) return "mcap:" + source;
   const std::string extension = path.extension();
   if (extension.empty()) return source;
@@ -84,19 +103,20 @@ std::string complete_uri(const std::string& source) {
 
 namespace {
 
-std::unique_ptr<FrameSource> make_tum_source(const SourceUri& uri) {
-  TumSource::Options options;
+std::unique_ptr<FrameSource> make_folder_source(const SourceUri& uri) {
+  FolderSource::Options options;
   for (const auto& [key, value] : uri.parameters) {
     if (key == "masks") {
       options.masks = parse_flag(uri.text, key, value);
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
-    } else {
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; tum: knows masks, tolerance_ms");
+    } else if (!take_calibration_parameter(options.calibration, uri.text, key, value)) {
+      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
+                        ": knows masks, tolerance_ms, fps, " + kCalibrationParameters);
     }
   }
-  if (uri.path.empty()) throw SourceError("source 'tum:' needs a folder: tum:FOLDER");
-  return std::make_unique<TumSource>(uri.text, uri.path, options);
+  if (uri.path.empty()) throw SourceError("source '" + uri.text + "' needs a folder: " + uri.scheme + ":FOLDER");
+  return std::make_unique<FolderSource>(uri.text, uri.path, std::move(options));
 }
 
 RecordingOptions recording_options(const SourceUri& uri) {
@@ -105,18 +125,19 @@ RecordingOptions recording_options(const SourceUri& uri) {
   const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
                                                      {"depth", &options.topics.depth},
                                                      {"info", &options.topics.info},
-                                                     {"depth_info", &options.topics.depth_info},
-                                                     {"calibration", &options.calibration_file}};
+                                                     {"depth_info", &options.topics.depth_info}};
   for (const auto& [key, value] : uri.parameters) {
     if (const auto found = known.find(key); found != known.end()) {
       *found->second = value;
+    } else if (key != "fps" && take_calibration_parameter(options.calibration, uri.text, key, value)) {
+      continue;
     } else if (key == "registered") {
       options.registered = parse_flag(uri.text, key, value);
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
     } else {
       throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                        ": knows color, depth, info, calibration, depth_info, registered, tolerance_ms");
+                        ": knows color, depth, info, depth_info, registered, tolerance_ms, " + kCalibrationParameters);
     }
   }
   return options;
@@ -163,7 +184,7 @@ std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
 
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
-  if (uri.scheme == "tum") return make_tum_source(uri);
+  if (is_of_kind(text, SourceKind::kFolder)) return make_folder_source(uri);
   if (uri.scheme == "synthetic") return std::make_unique<SyntheticSource>(uri.text, parse_synthetic_options(uri));
   if (is_recording(uri)) return make_recording_source(uri);
   if (is_live(text)) {

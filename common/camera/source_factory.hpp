@@ -31,14 +31,16 @@ std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value
 /// The value of a parameter that is 0 or 1. Throws SourceError naming URI and key.
 bool parse_flag(const std::string& uri, const std::string& key, const std::string& value);
 
-/// Adds the scheme that a path leaves out: a folder is a TUM sequence, FILE.bag, FILE.db3, FILE.mcap and FILE.oni are
+/// Adds the scheme that a path, with or without ?key=value, leaves out: a folder holds frames (tum: where it has TUM's
+/// lists) or a recording, FILE.bag, FILE.db3, FILE.mcap and FILE.oni are
 /// recordings. Everything else stays as it is.
 std::string complete_uri(const std::string& source);
 
 /// Opens a source by its URI:
-///   tum:FOLDER[?masks=1&tolerance_ms=20]
-///   bag:FILE[?color=TOPIC&depth=TOPIC&info=TOPIC&depth_info=TOPIC&calibration=FILE&registered=1&tolerance_ms=20]
-///     ROS 1 bag
+///   folder:FOLDER[?calibration=FILE&intrinsics=fx,fy,cx,cy&depth_factor=1000&fps=30&tolerance_ms=20&masks=1]
+///   tum:FOLDER[?...]   the same
+///   bag:FILE[?color=TOPIC&depth=TOPIC&info=TOPIC&depth_info=TOPIC&calibration=FILE&intrinsics=...&depth_factor=...
+///     &registered=1&tolerance_ms=20]   ROS 1 bag
 ///   db3:FILE[?...]   the same of a rosbag2 file in sqlite3 format
 ///   mcap:FILE[?...]   the same of a recording of any form; frames that we recorded ourselves come first
 ///   synthetic:SCENE[?seed=1&frames=300&fps=30&noise=1&people=N&boxes=N&width=640&height=480]   frames=0: endless;

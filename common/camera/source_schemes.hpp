@@ -29,7 +29,8 @@ struct SourceScheme {
   const char* extension = "";  ///< of a file whose path may leave the scheme out
 };
 
-inline constexpr std::array<SourceScheme, 8> kSourceSchemes{{
+inline constexpr std::array<SourceScheme, 9> kSourceSchemes{{
+    {"folder", SourceKind::kFolder, "folder:FOLDER"},
     {"tum", SourceKind::kFolder, "tum:FOLDER"},
     {"bag", SourceKind::kRecording, "bag:FILE", io::kBagExtension},
     {"db3", SourceKind::kRecording, "db3:FILE", io::kDb3Extension},

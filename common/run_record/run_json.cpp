@@ -118,6 +118,8 @@ Json record_json(const RunRecord& record) {
             {"frames_dropped", record.frames_dropped},
             {"drops", Json::object()},
             {"left_out", Json::object()},
+            {"depth_median_m", to_value(record.depth_median_m)},
+            {"depth_holes", to_value(record.depth_holes)},
             {"processes", processes_json(record.processes)},
             {"clocks", Json::array()},
             {"events", record.events},
@@ -185,6 +187,8 @@ RunRecord read_record(const Json& json) {
   json.at("frames_dropped").get_to(record.frames_dropped);
   record.frames_left_out = json.value("frames_left_out", std::uint64_t{0});  // earlier versions did not write them
   record.frames_out_of_range = json.value("frames_out_of_range", std::uint64_t{0});
+  if (json.contains("depth_median_m")) from_value(json.at("depth_median_m"), record.depth_median_m);
+  if (json.contains("depth_holes")) from_value(json.at("depth_holes"), record.depth_holes);
   json.at("events").get_to(record.events);
   record.frames = read_frames(json.at("frames"));
   read_lists(json, record);

@@ -47,9 +47,8 @@ bool is_synthetic(const std::string& source_uri) {
 }
 
 std::filesystem::path mask_folder(const std::string& source_uri) {
-  constexpr std::string_view kTum = "tum:";
-  if (!source_uri.starts_with(kTum)) return {};
-  const std::string folder = source_uri.substr(kTum.size());
+  if (!camera::is_of_kind(source_uri, camera::SourceKind::kFolder)) return {};
+  const std::string folder = source_uri.substr(source_uri.find(':') + 1);
   return std::filesystem::path(folder.substr(0, folder.find('?'))) / "mask";
 }
 

@@ -88,6 +88,8 @@ struct RunRecord {
   std::uint64_t frames_dropped = 0;                      ///< frames in without a TrackingResult
   std::map<std::string, double> drops;                   ///< by place, e.g. "camera.late", "filter.queue"
   std::map<std::string, double> left_out;                ///< by reason (camera::SkipReason): what the source left out
+  double depth_median_m = 0;                             ///< of the measured pixels; 0 = unknown
+  double depth_holes = 0;                                ///< share of the pixels without a measurement
   std::map<std::string, ProcessUsage> processes;
   std::vector<HostClock> clocks;    ///< of services on other hosts
   std::vector<std::string> events;  ///< restarts, degraded modes, warnings, in order
@@ -113,7 +115,7 @@ FrameUse frame_use(const RunRecord& record);
 
 /// Whether the source knows which pixels move: a synthetic scene, or a TUM folder with mask/.
 bool has_true_masks(const std::string& source_uri);
-/// The mask folder of a source "tum:FOLDER"; empty for other sources.
+/// The mask folder of a source "tum:FOLDER" or "folder:FOLDER"; empty for other sources.
 std::filesystem::path mask_folder(const std::string& source_uri);
 bool is_synthetic(const std::string& source_uri);
 

@@ -42,6 +42,8 @@ inline constexpr char kReconnects[] = "reconnects";
 inline constexpr char kJpegsDropped[] = "jpegs_dropped";
 inline constexpr char kResends[] = "resends";
 inline constexpr char kDepthOffsetMs[] = "depth_offset_ms";
+inline constexpr char kDepthMedianM[] = "depth_median_m";
+inline constexpr char kDepthHoles[] = "depth_holes";  ///< share of the pixels
 
 // Detector
 inline constexpr char kDetectMs[] = "detect_ms";

@@ -31,6 +31,7 @@ constexpr std::chrono::milliseconds kFarewell{300};           // the last heartb
 constexpr int kReportEvery = 10;                              // frames
 constexpr double kBufferedFrames = 3, kBuffered_s = 0.1;      // as a camera's driver buffers; readers keep four
 constexpr std::size_t kOffsetsToLog = 30;                     // frames
+constexpr std::uint64_t kDepthToLog = 11;                     // frames, of which two are looked at
 
 std::int64_t seconds_to_ns(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
@@ -129,10 +130,11 @@ CameraService::Outcome CameraService::open() {
   }
   if (source_->info().live) open_publisher();
   left_out_.open(source_->info().frames, static_cast<std::uint64_t>(config_.frames), source_->counters());
-  for (const std::string& note : source_->info().notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
   const auto& camera = source_->info().camera.parameters();
   SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
               source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
+  for (const std::string& remark : source_->info().remarks) SPDLOG_WARN("event=source_remark cause=\"{}\"", remark);
+  for (const std::string& note : source_->info().notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
   return Outcome::kDone;
 }
 
@@ -205,6 +207,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
   ++frames_in_;
   left_out_.add(frame.image);
   note_depth_offset(frame);
+  note_depth(frame);
   while (!runtime_.stop.stop_requested()) {
     take_results();
     const service::PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
@@ -336,6 +339,16 @@ void CameraService::note_depth_offset(const SourceFrame& frame) {
   SPDLOG_INFO("event=depth_offset median_ms={:.1f} frames={}", *depth_offsets_.median_ms(), depth_offsets_.size());
 }
 
+/// Of every tenth frame; said once, and again in heartbeats and at the end.
+void CameraService::note_depth(const SourceFrame& frame) {
+  if (frames_in_ % kReportEvery == 1) depth_figures_.add(frame.image.depth, frame.image.depth_scale_m);
+  const std::optional<double> median_m = depth_figures_.median_m();
+  if (frames_in_ != kDepthToLog || !median_m) return;
+  SPDLOG_INFO("event=depth_seen median_m={:.2f} holes={:.3f}", *median_m, depth_figures_.hole_share());
+  const std::string doubt = depth_figures_.doubt(source_->info().depth_unit_given);
+  if (!doubt.empty()) SPDLOG_WARN("event=depth_unit_doubtful cause=\"{}\"", doubt);
+}
+
 void CameraService::report_counters() {
   const auto set = [this](const char* name, std::uint64_t value) {
     runtime_.heartbeat.set_metric(name, static_cast<double>(value));
@@ -352,6 +365,10 @@ void CameraService::report_counters() {
   set(service::metric::kResends, pacer_.resends());
   if (const auto offset_ms = depth_offsets_.median_ms())
     runtime_.heartbeat.set_metric(service::metric::kDepthOffsetMs, *offset_ms);
+  if (const auto median_m = depth_figures_.median_m()) {
+    runtime_.heartbeat.set_metric(service::metric::kDepthMedianM, *median_m);
+    runtime_.heartbeat.set_metric(service::metric::kDepthHoles, depth_figures_.hole_share());
+  }
 }
 
 void CameraService::write_groundtruth() {
@@ -383,9 +400,10 @@ service::ExitCode CameraService::finish(Outcome outcome) {
   if (outcome != Outcome::kFailed) runtime_.heartbeat.set_state(msg::ServiceState::kFinished, left_out_.first());
   SPDLOG_INFO(
       "event=summary frames_in={} published={} late={} skipped={} without_depth={} refused={} resends={} "
-      "depth_offset_ms={:.1f}",
+      "depth_offset_ms={:.1f} depth_median_m={:.2f} depth_holes={:.3f}",
       frames_in_, published_, late(), counters_.skipped_total(), counters_.frames_without_depth, refused_,
-      pacer_.resends(), depth_offsets_.median_ms().value_or(0.0));
+      pacer_.resends(), depth_offsets_.median_ms().value_or(0.0), depth_figures_.median_m().value_or(0.0),
+      depth_figures_.hole_share());
   if (outcome != Outcome::kStopped) runtime_.stop.wait_for(kFarewell);
   return outcome == Outcome::kFailed ? service::kRunFailed : service::kOk;
 }

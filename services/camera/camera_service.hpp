@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/depth_offsets.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
@@ -102,6 +103,7 @@ class CameraService {
   void log_skipped(const ReadItem& item);
   void log_timeline(const service::PaceDecision& decision, const SourceFrame& frame);
   void note_depth_offset(const SourceFrame& frame);
+  void note_depth(const SourceFrame& frame);
   void report_counters();
   void write_groundtruth();
   Outcome fail(const std::string& message);
@@ -124,6 +126,7 @@ class CameraService {
   SourceCounters counters_;
   LeftOut left_out_;
   DepthOffsets depth_offsets_;
+  DepthFigures depth_figures_;
   std::uint64_t frames_in_ = 0, passed_over_ = 0, published_ = 0, refused_ = 0, last_seq_ = 0, newest_result_ = 0;
   bool any_result_ = false;
   std::atomic<bool> playing_{false};

@@ -41,7 +41,7 @@ int run_export(int argc, char** argv) {
   app.add_option("--frames", frames, "At most this many frames, 0 = all");
   return service::run_command(app, argc, argv, [&]() -> int {
     try {
-      const std::unique_ptr<FrameSource> source = make_source(uri);
+      const std::unique_ptr<FrameSource> source = make_source(complete_uri(uri));
       std::cout << export_tum(*source, folder, frames) << " frames written to " << folder << '\n';
       return service::kOk;
     } catch (const SourceError& error) {

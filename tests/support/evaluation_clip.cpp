@@ -8,7 +8,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/camera/calibration.hpp"
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/frame_lists.hpp"
 #include "common/geometry/trajectory.hpp"
 
 namespace rtd::test_support {

@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "common/camera/calibration.hpp"
@@ -112,8 +115,10 @@ class ImagePairs final : public RecordingSource {
  private:
   std::optional<std::int64_t> advance() override;
   std::optional<SourceFrame> decode() override;
-  void look_at_first_images();
+  void look_at_first_images(const RecordingOptions& options);
   void load_calibration(const RecordingOptions& options);
+  void load_recorded_camera();
+  void take_floats_per_metre(double per_metre);
   std::optional<geometry::CameraModel> recorded_camera(const std::string& info_topic, const std::string& image_topic);
   /// Sees to it that depth is registered to colour.
   void align_depth();
@@ -121,7 +126,8 @@ class ImagePairs final : public RecordingSource {
 
   ImageTopics topics_;
   ImageOrigin color_, depth_;
-  double float_unit_m_;  ///< of depth in floats
+  double float_step_;    ///< of depth in floats: what becomes a unit, in the unit of the floats
+  bool floats_ = false;  ///< depth is in floats
   std::optional<vision::DepthRegistration> registration_;
   FramePairer pairer_;
   geometry::TransformLog transforms_;
@@ -135,10 +141,10 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
       topics_(choose_topics(*recording_, options.topics)),
       pairer_({.tolerance_ns = options.tolerance_ns}) {
   recordings::Reader& recording = *recording_;
-  float_unit_m_ = float_unit_of(*topic_named(recording, topics_.depth));
+  float_step_ = float_unit_of(*topic_named(recording, topics_.depth));
   describe_rate(topics_.color);
   try {
-    look_at_first_images();
+    look_at_first_images(options);
     load_calibration(options);
     if (!options.registered) align_depth();
   } catch (const ros::WireError& error) {
@@ -151,16 +157,27 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
   read_first(recording.name());
 }
 
-void ImagePairs::look_at_first_images() {
+void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   const RecordedMessage color = first_of(*recording_, topics_.color), depth = first_of(*recording_, topics_.depth);
   color_ = {
       topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, decode_color(color).image.size(), {}};
   depth_ = {topics_.depth,
             ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id,
-            decode_depth(depth, float_unit_m_).image.size(),
+            decode_depth(depth, float_step_).image.size(),
             {}};
   const auto sdk_unit_m = sdk_depth_unit_m(*recording_, topics_.depth);
-  info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_unit_m_);
+  info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_step_);
+  floats_ = has_float_depth(depth);
+  const std::optional<double>& requested = options.calibration.depth_factor;
+  take_floats_per_metre(requested ? *requested : float_step(depth, info_.depth_scale_m) / info_.depth_scale_m);
+}
+
+/// Floats in another unit than ROS's metre.
+void ImagePairs::take_floats_per_metre(double per_metre) {
+  if (!floats_ || per_metre == 1) return;
+  float_step_ = info_.depth_scale_m * per_metre;
+  info_.notes.push_back(
+      fmt::format("depth of {} is taken for 1/{:g} m, although ROS has metres in floats", topics_.depth, per_metre));
 }
 
 /// The camera of a CameraInfo; empty when the recording has none.
@@ -173,15 +190,25 @@ std::optional<geometry::CameraModel> ImagePairs::recorded_camera(const std::stri
 }
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
-  if (!options.calibration_file.empty()) {
-    apply(read_calibration(options.calibration_file), info_);
-    return;
+  const CalibrationRequest& request = options.calibration;
+  if (request.has_camera()) {
+    const double recorded_m = info_.depth_scale_m;
+    apply(requested_calibration(request, std::filesystem::path(recording_->name()).parent_path(), color_.size_px),
+          info_);
+    if (floats_) info_.depth_scale_m = recorded_m;  // floats say what they are
+  } else {
+    load_recorded_camera();
   }
+  if (request.depth_factor && !floats_) info_.depth_scale_m = 1.0 / *request.depth_factor;
+}
+
+void ImagePairs::load_recorded_camera() {
   color_.camera = recorded_camera(topics_.info, topics_.color);
   if (!color_.camera) {
-    throw SourceError(recording_->name() + ": no sensor_msgs/CameraInfo beside " + topics_.color +
-                      "; name it (?info=TOPIC) or give ?calibration=FILE; its topics are:\n" +
-                      list_topics(*recording_));
+    throw SourceError(
+        recording_->name() + ": no sensor_msgs/CameraInfo beside " + topics_.color +
+        "; name it (?info=TOPIC) or give ?calibration=FILE or ?intrinsics=fx,fy,cx,cy; its topics are:\n" +
+        list_topics(*recording_));
   }
   info_.camera = *color_.camera;
 }
@@ -243,7 +270,7 @@ void ImagePairs::take(RecordedMessage message) {
 
 std::optional<SourceFrame> ImagePairs::decode() {
   take_damages();
-  return decode_pair(*std::exchange(pair_, std::nullopt), float_unit_m_, info_, registration_, skips_);
+  return decode_pair(*std::exchange(pair_, std::nullopt), float_step_, info_, registration_, skips_);
 }
 
 geometry::Trajectory ImagePairs::groundtruth() const {

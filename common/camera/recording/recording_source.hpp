@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/camera/calibration_request.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/recording.hpp"
 
@@ -13,7 +14,7 @@ namespace rtd::camera {
 /// The user's parameters for a recording.
 struct RecordingOptions {
   ImageTopics topics;
-  std::string calibration_file;                     ///< replaces the recording's calibration and depth unit
+  CalibrationRequest calibration;                   ///< replaces the recording's, and its depth unit where it has one
   bool registered = false;                          ///< depth is registered to colour, whatever it looks like
   std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
 };

@@ -9,6 +9,7 @@
 #include <span>
 #include <string_view>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/color_encodings.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
@@ -18,8 +19,6 @@ namespace rtd::camera {
 namespace {
 
 constexpr const char* kDepthTransport = "compressedDepth";
-constexpr double kMaxUnits = 65534;  // 65535 is TUM's "saturated"
-
 constexpr std::uint64_t kMaxPixels = 1U << 24;  // a run of zeros costs nothing: memory needs a limit of its own
 
 /// The numbers of variable length.
@@ -93,20 +92,6 @@ cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
     }
   }
   return depth_m;
-}
-
-/// CV_32FC1 metres -> CV_16UC1 in units of unit_m; NaN, infinity, negative and what does not fit become 0.
-cv::Mat quantize_depth(const cv::Mat& depth_m, double unit_m) {
-  cv::Mat depth(depth_m.size(), CV_16UC1);
-  for (int row = 0; row < depth.rows; ++row) {
-    const auto* from = depth_m.ptr<float>(row);
-    auto* to = depth.ptr<std::uint16_t>(row);
-    for (int column = 0; column < depth.cols; ++column) {
-      const double units = std::round(from[column] / unit_m);
-      to[column] = units >= 0 && units <= kMaxUnits ? static_cast<std::uint16_t>(units) : 0;  // NaN compares false
-    }
-  }
-  return depth;
 }
 
 constexpr const char* kDepthCodecs = "compressedDepth (PNG, RVL)";
@@ -266,6 +251,19 @@ double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
                           ? ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1")
                           : depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
   return floats ? float_unit_m : kMillimetre;
+}
+
+bool has_float_depth(const RecordedMessage& message) {
+  constexpr double kOfFloats = -1;
+  return depth_unit_m(message, kOfFloats) == kOfFloats;
+}
+
+double float_step(const RecordedMessage& message, double float_unit_m) {
+  constexpr double kMillimetresPerMetre = 1000;
+  if (!has_float_depth(message)) return float_unit_m;
+  cv::Mat whole_values;
+  decode_depth(message, 1.0).image.convertTo(whole_values, CV_32F);
+  return floats_are_millimetres(whole_values) ? kMillimetresPerMetre * float_unit_m : float_unit_m;
 }
 
 msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,

@@ -54,6 +54,14 @@ cv::Mat color_edges(const cv::Mat& color_bgr) {
   return cv::min(strength, 150.0);  // a few strong edges must not outvote the rest
 }
 
+std::string depth_text(const DepthFigures& figures, bool unit_given) {
+  if (!figures.median_m()) return {};
+  const std::string doubt = figures.doubt(unit_given);
+  return fmt::format("depth         median {:.2f} m, nine tenths below {:.2f} m\n", *figures.median_m(),
+                     *figures.quantile_m(0.9)) +
+         (doubt.empty() ? "" : "WARNING       " + doubt + '\n');
+}
+
 /// Where the parabola through three values has its top, relative to the middle one.
 double top_of(double before, double middle, double after) {
   const double bend = before - 2 * middle + after;
@@ -69,6 +77,7 @@ void Preview::add(const SourceFrame& frame) {
   depth_ = frame.image.depth;
   holes_ += 1 - static_cast<double>(cv::countNonZero(depth_)) / static_cast<double>(depth_.total());
   offsets_s_ += frame.image.depth_offset_s;
+  if (frame.image.depth_scale_m > 0) figures_.add(depth_, frame.image.depth_scale_m);
   if (frames_++ % kCompareEvery == 0) compare_edges(color_, depth_);
 }
 
@@ -128,8 +137,10 @@ std::string Preview::text(const SourceInfo& info, const SourceCounters& counters
                                  frames_, rate_hz(), info.fps);
   text += fmt::format("size          {} px, fx {:.1f} fy {:.1f} cx {:.1f} cy {:.1f}\n", size_text(color_.size()),
                       camera.fx, camera.fy, camera.cx, camera.cy);
+  for (const std::string& note : info.notes) text += "              " + note + '\n';
   text += fmt::format("depth unit    {:g} m\nholes         {:.1f} % of the depth image\n", info.depth_scale_m,
                       100 * hole_share());
+  text += depth_text(figures_, info.depth_unit_given);
   text += fmt::format("depth - color {:.1f} ms by the stamps\n", 1e3 * depth_offset_s());
   text += shift ? fmt::format("              {:.1f} px to the right, {:.1f} px down by the edges\n", shift->x, shift->y)
                 : std::string("              not measured in px: point the camera at objects in front of a wall\n");

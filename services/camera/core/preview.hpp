@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 
 namespace rtd::camera {
@@ -39,6 +40,7 @@ class Preview {
   std::uint64_t frames_ = 0, edge_pixels_ = 0;
   std::int64_t first_ns_ = 0, newest_ns_ = 0;
   double holes_ = 0, offsets_s_ = 0;
+  DepthFigures figures_;
   /// By shift: mean strength of colour edges under the edges of depth.
   cv::Mat scores_ = cv::Mat::zeros(2 * kReachY + 1, 2 * kReachX + 1, CV_64FC1);
   cv::Mat color_, depth_;

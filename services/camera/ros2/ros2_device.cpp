@@ -129,7 +129,8 @@ void Ros2Device::check_first(const FramePairer::Pair& pair, const SourceInfo& kn
   try {
     const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
     unit_m_ = depth_unit_m(depth, kFloatDepthUnitM);
-    const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, kFloatDepthUnitM);
+    float_step_ = float_step(depth, kFloatDepthUnitM);
+    const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, float_step_);
     color_origin_.topic = options_.topics.color;
     depth_origin_.topic = options_.topics.depth;
     color_origin_.frame_id = ros::decode<msg::Header>(color.wire, color.bytes).frame_id;
@@ -188,7 +189,7 @@ void Ros2Device::drop_waiting() {
 }
 
 ImageRead Ros2Device::decode(const DeviceMode& mode, const RecordedMessage& message) const {
-  return mode.stream == Stream::kColor ? decode_color(message) : decode_depth(message, kFloatDepthUnitM);
+  return mode.stream == Stream::kColor ? decode_color(message) : decode_depth(message, float_step_);
 }
 
 std::vector<SkippedInput> Ros2Device::take_skipped() {

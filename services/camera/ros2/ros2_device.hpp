@@ -12,6 +12,7 @@
 
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/live_uri.hpp"
+#include "common/camera/recording/ros_images.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "services/camera/core/live/live_device.hpp"
 
@@ -79,8 +80,9 @@ class Ros2Device final : public LiveDevice {
   const LiveOptions options_;
   bool opened_ = false;  ///< frames are given out from now on
   ImageOrigin color_origin_, depth_origin_;
-  double unit_m_ = 0;                   ///< of depth
-  std::string unregistered_, lacking_;  ///< why depth must be registered, and what that lacks
+  double unit_m_ = 0;                     ///< of depth
+  double float_step_ = kFloatDepthUnitM;  ///< of depth in floats: what becomes a unit, in the unit of the floats
+  std::string unregistered_, lacking_;    ///< why depth must be registered, and what that lacks
   geometry::TransformLog lasting_transforms_, transforms_;
   std::optional<DepthCamera> depth_camera_;    ///< when depth is to be registered
   std::optional<std::int64_t> first_lack_ns_;  ///< when a pair came that could not be aligned

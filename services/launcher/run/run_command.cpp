@@ -55,6 +55,7 @@ void print_setup(const RunSetup& setup, Terminal& terminal) {
                              setup.services.filter_mode,
                              setup.model_path.empty() && !setup.remote_detector ? "off" : setup.detector_note,
                              setup.bus_options.vendor, setup.bus_options.domain));
+  for (const std::string& note : setup.source_notes) terminal.print("  " + note);
 }
 
 service::ExitCode exit_code(RunOutcome outcome, bool tracked_any, bool too_few) {

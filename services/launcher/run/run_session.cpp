@@ -56,7 +56,8 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   require_free_domain();
   clear_out_dir(setup_);
-  for (const std::string& text : setup_.source_notes) note(text);
+  events_ = setup_.source_remarks;  // the terminal shows them as warnings of the camera
+  if (!setup_.depth_doubt.empty()) note(setup_.depth_doubt);
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
   ServicePlan camera = plans.back();

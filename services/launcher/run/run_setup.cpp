@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/device_uri.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
@@ -21,6 +22,7 @@
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
+#include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
@@ -109,7 +111,21 @@ void require_local_camera(const std::string& source) {
   if (!why.empty()) throw ConfigError(why);
 }
 
-/// Opens a source that is no running camera, for its length and its notes.
+std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
+  if (limit == 0) return frames;
+  return frames == 0 ? limit : std::min(frames, limit);
+}
+
+/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
+std::string doubt_about_depth(camera::FrameSource& source) {
+  const std::optional<camera::SourceFrame> first = source.next();
+  if (!first) return {};
+  camera::DepthFigures figures;
+  figures.add(first->image.depth, first->image.depth_scale_m);
+  return figures.doubt(source.info().depth_unit_given);
+}
+
+/// How many frames come, and what the source was taken for.
 void look_at_source(RunSetup& setup) {
   if (camera::is_live(setup.source)) {
     camera::check_live_uri(setup.source);
@@ -118,10 +134,10 @@ void look_at_source(RunSetup& setup) {
     return;
   }
   const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
+  setup.total_frames = limited(source->info().frames, setup.frames);
   setup.source_notes = source->info().notes;
-  setup.total_frames = source->info().frames;
-  if (setup.frames > 0)
-    setup.total_frames = setup.total_frames == 0 ? setup.frames : std::min(setup.total_frames, setup.frames);
+  setup.source_remarks = source->info().remarks;
+  if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.

@@ -116,7 +116,9 @@ struct RunSetup : RunOptions {
   bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
-  std::vector<std::string> source_notes;          ///< what people should know of the source's data
+  std::vector<std::string> source_notes;          ///< what the source was taken for
+  std::vector<std::string> source_remarks;        ///< what is wrong with it although it is played
+  std::string depth_doubt;                        ///< why the depth unit is likely another; empty: it is not
   std::string model_path;                         ///< empty: no detector in this run
   std::string detector_note;                      ///< "YOLOX-nano, Apache-2.0", or "off (why)"
   std::string mask_model_path;                    ///< empty: boxes alone

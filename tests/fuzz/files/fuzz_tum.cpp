@@ -10,8 +10,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "common/camera/folder/frame_lists.hpp"
 #include "common/camera/frame_source.hpp"
-#include "common/camera/tum/tum_source.hpp"
 #include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"

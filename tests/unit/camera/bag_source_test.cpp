@@ -81,6 +81,25 @@ TEST(BagSource, passes_over_old_frames_which_keep_their_seq) {
   test::expect_passes_over_two_of_three(bag.uri());
 }
 
+TEST(BagSource, floats_in_millimetres_are_recognised_and_parameters_give_unit_and_camera) {
+  const auto first_of = [](double value, const std::string& parameters) {
+    ImageBag bag;
+    bag.add_info();
+    bag.add_color(1);
+    bag.add_depth(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_32FC1, cv::Scalar(value)), "32FC1");
+    const auto source = make_source(bag.uri() + parameters);
+    EXPECT_EQ(source->info().notes.size(), value == 1.5 ? 0U : 1U);
+    return source->next().value().image;
+  };
+  const auto metres = [](const vision::RgbdImage& image) {
+    return image.depth.at<std::uint16_t>(3, 3) * image.depth_scale_m;
+  };
+  EXPECT_NEAR(metres(first_of(1.5, "")), 1.5, 1e-3);
+  EXPECT_NEAR(metres(first_of(1500, "")), 1.5, 1e-3);
+  EXPECT_NEAR(metres(first_of(15000, "?depth_factor=10000")), 1.5, 1e-3);
+  EXPECT_EQ(first_of(1.5, "?intrinsics=31,32,15.5,11.5").camera.parameters().fy, 32);
+}
+
 TEST(BagSource, depth_without_a_measurement_becomes_zero) {
   ImageBag bag;
   bag.add_info();
@@ -309,8 +328,10 @@ TEST(BagSource, plays_the_intact_part_of_a_damaged_bag_and_reports_the_loss) {
 
 TEST(BagSource, names_the_parameters_it_knows) {
   EXPECT_TRUE(refuses("bag:", {"needs a file", "bag:FILE"}));
-  EXPECT_TRUE(refuses("bag:x?colour=/a", {"unknown parameter 'colour'",
-                                          "color, depth, info, calibration, depth_info, registered, tolerance_ms"}));
+  EXPECT_TRUE(
+      refuses("bag:x?colour=/a",
+              {"unknown parameter 'colour'",
+               "color, depth, info, depth_info, registered, tolerance_ms, calibration, depth_factor, intrinsics"}));
   EXPECT_TRUE(refuses("bag:/nowhere.bag", {"/nowhere.bag cannot be read"}));
 }
 

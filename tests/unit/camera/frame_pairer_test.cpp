@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <random>
 
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/frame_lists.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -47,6 +47,21 @@ TEST(PreviewTest, measures_rate_holes_and_time_between_the_images) {
   EXPECT_THAT(preview.text({}, {}), HasSubstr("25.0 % of the depth image"));
 }
 
+TEST(PreviewTest, says_how_far_away_depth_is_and_doubts_its_unit) {
+  Preview preview;
+  SourceFrame frame = box({});
+  frame.image.depth_scale_m = 1.0 / 5000;
+  preview.add(frame);
+  const std::string text = preview.text({.depth_scale_m = 1.0 / 5000, .depth_unit_given = false}, {});
+  EXPECT_THAT(text, HasSubstr("median 0.6"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("WARNING"))) << "a shelf in front of the camera, or 3 m";
+  Preview near;
+  frame.image.depth /= 2;
+  near.add(frame);
+  EXPECT_THAT(near.text({.depth_scale_m = 1.0 / 5000, .depth_unit_given = false}, {}),
+              testing::AllOf(HasSubstr("WARNING"), HasSubstr("millimetres"), HasSubstr("?depth_factor=1000")));
+}
+
 TEST(PreviewTest, measures_how_far_depth_lies_beside_colour) {
   for (const cv::Point shift : {cv::Point(0, 0), cv::Point(7, -3), cv::Point(-9, 4)}) {
     Preview preview;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/frame_lists.hpp"
 
 #include <gmock/gmock.h>
 

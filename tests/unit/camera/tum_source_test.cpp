@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/tum/tum_source.hpp"
+#include "common/camera/folder/folder_source.hpp"
 
 #include <gmock/gmock.h>
 
@@ -146,10 +146,14 @@ TEST(TumSource, names_the_formats_it_reads) {
   folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
   folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
   folder.append("depth.txt", "1.3 depth/f.tiff\n");
+  folder.write("depth/g.bmp", "BM");
+  folder.append("rgb.txt", "1.4 rgb/1.0.png\n");
+  folder.append("depth.txt", "1.4 depth/g.bmp\n");
   const Played played = play(folder);
-  EXPECT_THAT(played.frames, SizeIs(3));
+  ASSERT_THAT(played.frames, SizeIs(4));
+  EXPECT_EQ(played.frames[3].image.depth.at<std::uint16_t>(0, 0), 7500) << "1.5 m";
   EXPECT_EQ(played.counters.of(SkipReason::kDepthUnreadable), 1U);
-  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("f.tiff"), HasSubstr("readable: JPEG and PNG")));
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("g.bmp"), HasSubstr("readable: 16-bit PNG, PGM, TIFF")));
 }
 
 TEST(TumSource, refuses_a_sequence_without_one_good_frame) {
@@ -236,24 +240,45 @@ TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
 TEST(TumSource, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
   const SequenceFolder folder;
   folder.three_frames();
-  folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
+  folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw
+1.0 0 0 0 0 0 0 1
+1.1 nan 0 0 0 0 0 1
+");
   auto source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(1));
-  EXPECT_THAT(source->info().notes, ElementsAre(HasSubstr("1 title line"), HasSubstr("1 row of nan left out")));
-  folder.write("groundtruth.txt", "1.0 0 0 0 90 45 10\n");
+  EXPECT_THAT(source->info().remarks, ElementsAre(HasSubstr("1 title line"), HasSubstr("1 row of nan left out")));
+  folder.write("groundtruth.txt", "1.0 0 0 0 90 45 10
+");
   source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(0));
-  EXPECT_THAT(source->info().notes,
+  EXPECT_THAT(source->info().remarks,
               ElementsAre(AllOf(HasSubstr("ground truth not used: "), HasSubstr("groundtruth.txt:1: 7 columns"))));
-  folder.write("groundtruth.txt", "100001000 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(make_source(folder.uri())->info().notes, ElementsAre(HasSubstr("no pose at the time of the frames")));
+  folder.write("groundtruth.txt", "100001000 0 0 0 0 0 0 1
+");
+  EXPECT_THAT(make_source(folder.uri())->info().remarks, ElementsAre(HasSubstr("no pose at the time of the frames")));
+}
+
+TEST(TumSource, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_others) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  folder.write("groundtruth.txt",
+               "timestamp tx ty tz qx qy qz qw
+1.0 0 0 0 0 0 0 1
+1.1 0 0 broken 0 0 0 1
+1.2 1 0 0 0 0 0 1
+");
+  const auto source = make_source(folder.uri());
+  EXPECT_THAT(source->groundtruth(), SizeIs(2));
+  EXPECT_THAT(source->info().notes, testing::Contains(HasSubstr("2 poses of groundtruth.txt; 2 belong")));
+  EXPECT_THAT(source->info().remarks, testing::Contains(AllOf(HasSubstr("1 row that cannot be read, first: "),
+                                                              HasSubstr("groundtruth.txt:3: 'broken'"))));
 }
 
 TEST(MakeSource, names_the_schemes_it_knows) {
   EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
-  EXPECT_THAT(
-      [] { make_source("rosbag:x"); },
-      ThrowsMessage<SourceError>(HasSubstr("known: bag, db3, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
+  EXPECT_THAT([] { make_source("rosbag:x"); },
+              ThrowsMessage<SourceError>(
+                  HasSubstr("known: bag, db3, folder, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
   for (const char* video_nodes : {"v4l2:", "v4l2:/dev/video0,/dev/video2?calibration=c.yaml"}) {
     EXPECT_FALSE(is_live(video_nodes));
     EXPECT_THAT(

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/recordings/open.hpp"
 
+#include <fstream>
 #include <random>
 
 #include "common/camera/source_factory.hpp"
@@ -204,9 +205,14 @@ TEST_F(OpenTest, info_and_diff_take_every_form) {
 TEST_F(OpenTest, bare_paths_become_sources) {
   folder_.db3("bag/bag_0.db3", samples(0, 4));
   fs::create_directory(folder_ / "tum");
+  fs::create_directory(folder_ / "pairs");
+  std::ofstream(folder_ / "tum/associations.txt") << "1 a 1 b\n";
   EXPECT_EQ(camera::complete_uri(folder_ / "bag"), "mcap:" + folder_ / "bag");
   EXPECT_EQ(camera::complete_uri(folder_ / "tum"), "tum:" + folder_ / "tum");
+  EXPECT_EQ(camera::complete_uri(folder_ / "tum?masks=1"), "tum:" + folder_ / "tum?masks=1");
+  EXPECT_EQ(camera::complete_uri(folder_ / "pairs"), "folder:" + folder_ / "pairs");
   EXPECT_EQ(camera::complete_uri("x.mcap.zst"), "mcap:x.mcap.zst");
+  EXPECT_EQ(camera::complete_uri("x.tar.zst"), "x.tar.zst");
 }
 
 }  // namespace

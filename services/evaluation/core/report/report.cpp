@@ -146,6 +146,10 @@ Json integrity_json(const RunSummary& summary) {
   return integrity;
 }
 
+std::string depth_text(const Run& run) {
+  return fmt::format("median {:.2f} m, {:.0f} % of the image without", run.depth_median_m, 100 * run.depth_holes);
+}
+
 Json removal_json(const Run& run) {
   if (!run.removal) return nullptr;
   Json removal = quality_json(run.removal->all);
@@ -198,6 +202,7 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
   text += row("ATE rmse", both_ates(summary));
   if (const Drift* drift = drift_of(summary); drift != nullptr && drift->nearly_constant())
     text += row("drift", explain(*drift, summary.scene_depth_m));
+  if (run.depth_median_m > 0) text += row("depth", depth_text(run));
   if (run.removal) text += row("removed", removal_text(*run.removal));
   text += row("speed", number(summary.fps, "{:.1f}", " frames/s"));
   text += row("latency", fmt::format("p50 {}, p99 {}", number(summary.latency_ms.p50, "{:.1f}", " ms"),
@@ -263,6 +268,10 @@ Json report_json(const Run& run, const RunSummary& summary) {
                              ? Json(nullptr)
                              : Json({{"path", run.static_map_path}, {"points", run.static_map_points}});
   report["lost_spans"] = lost_json(summary);
+  report["depth"] =
+      run.depth_median_m > 0
+          ? Json({{"median_m", number_or_null(run.depth_median_m)}, {"holes", number_or_null(run.depth_holes)}})
+          : Json(nullptr);
   report["drops"] = Json::object();
   for (const auto& [place, count] : run.drops) report["drops"][place] = number_or_null(count);
   report["left_out"] = Json::object();

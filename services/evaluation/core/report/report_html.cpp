@@ -278,6 +278,9 @@ std::string header_badges(const Run& run, const RunSummary& summary) {
        {"detector", run.detector},
        {"pace", run.pace},
        {"dds", run.dds},
+       {"depth", run.depth_median_m > 0
+                     ? fmt::format("median {:.2f} m, {:.0f} % holes", run.depth_median_m, 100 * run.depth_holes)
+                     : ""},
        {"keyframes", fmt::format("{}", summary.keyframes)},
        {"landmarks", fmt::format("{}", summary.landmarks)},
        {"static map", run.static_map_path.empty() ? "" : fmt::format("{} points", run.static_map_points)},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/run_record/run_record.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
@@ -25,7 +26,8 @@ void add_depths(const vision::RgbdImage& image, std::vector<double>& depths_m) {
 }  // namespace
 
 std::optional<double> scene_depth_m(const std::string& source_uri) {
-  if (!source_uri.starts_with("tum:") && !run_record::is_synthetic(source_uri)) return std::nullopt;
+  const bool folder = camera::is_of_kind(source_uri, camera::SourceKind::kFolder);
+  if (!folder && !run_record::is_synthetic(source_uri)) return std::nullopt;
   std::vector<double> depths_m;
   try {
     const auto source = camera::make_source(source_uri);

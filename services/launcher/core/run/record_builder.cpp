@@ -224,6 +224,8 @@ void RecordBuilder::fill(run_record::RunRecord& record) const {
   record.frames_out_of_range = counted(camera_counter(metric::kFramesOutOfRange).total());
   record.left_out = left_out();
   record.drops = drops();
+  record.depth_median_m = camera_counter(metric::kDepthMedianM).current;
+  record.depth_holes = camera_counter(metric::kDepthHoles).current;
   record.clocks = clocks();
 }
 
