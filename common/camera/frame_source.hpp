@@ -107,6 +107,7 @@ struct SourceInfo {
   double depth_offset_s = 0;
   bool has_imu = false, has_wheels = false;                         ///< frames come with what they measured
   Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
+  std::vector<std::string> remarks;  ///< what is wrong with the source although it is played: for the log
 };
 
 /// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.
@@ -146,10 +147,15 @@ class SkipLog {
   std::vector<SkippedInput> take() { return std::exchange(skipped_, {}); }
   /// ": 2 x size_mismatch, first: ..."; empty when nothing was left out.
   std::string summary() const;
+  /// What has left out all images since the last frame: how many, and the newest. Empty when nothing was left out for
+  /// what it is (that colour and depth do not pair, or came too fast, has words of its own).
+  std::string why_none() const;
 
  private:
   SourceCounters counters_;
   std::vector<SkippedInput> skipped_;
+  std::uint64_t unusable_ = 0;  ///< since the last frame
+  std::string newest_;          ///< of these
 };
 
 /// A source that plays a file: what its frames are made of is left to the derived class.

@@ -131,6 +131,7 @@ CameraService::Outcome CameraService::open() {
   const auto& camera = source_->info().camera.parameters();
   SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
               source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
+  for (const std::string& remark : source_->info().remarks) SPDLOG_WARN("event=source_remark cause=\"{}\"", remark);
   return Outcome::kDone;
 }
 

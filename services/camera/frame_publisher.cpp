@@ -98,9 +98,13 @@ FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Ove
 void FramePublisher::open(cv::Size size_px) {
   frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
                              static_cast<std::uint32_t>(size_px.height), on_match(on_matched_));
+  size_px_ = size_px;
+  source_id_ = random_id();
+  info_sent_ = false;
 }
 
 bool FramePublisher::publish(const vision::RgbdImage& image) {
+  if (image.color_bgr.size() != size_px_) open(image.color_bgr.size());
   const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
   jpegs_.offer(image.color_bgr, image.stamp_ns);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {

@@ -112,10 +112,10 @@ class FramePublisher {
   FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
                  std::function<void()> on_matched);
 
-  /// Chooses the frame topic for images of this size; to be called once, before the first frame. Throws bus::BusError
-  /// when images are too large.
+  /// Chooses the frame topic for images of this size, before the first frame. Throws bus::BusError when images are too
+  /// large.
   void open(cv::Size size_px);
-  /// False when the bus did not take the raw frame.
+  /// False when the bus did not take the raw frame. A frame of another size opens its topic, as a source of its own.
   bool publish(const vision::RgbdImage& image);
   /// Readers of the raw frame and of the JPEG topic.
   int frame_readers() const { return frames_.matched(); }
@@ -130,6 +130,7 @@ class FramePublisher {
   bus::FrameWriter frames_;
   bus::Writer<msg::CameraInfo> infos_;
   bool info_sent_ = false;
+  cv::Size size_px_;
   JpegPublisher jpegs_;
 };
 
