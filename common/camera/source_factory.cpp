@@ -161,6 +161,11 @@ std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
   return beside;
 }
 
+std::unique_ptr<recordings::Reader> recording_of(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  return is_recording(uri) ? open_file(uri) : nullptr;
+}
+
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (uri.scheme == "tum") return make_tum_source(uri);

@@ -118,6 +118,11 @@ class BusProblems {
   int count_ = 0;
 };
 
+void log_setting(const bus::EnvironmentSetting& setting) {
+  if (setting.followed) return SPDLOG_INFO("event=environment_followed setting=\"{}\"", setting.text);
+  SPDLOG_WARN("event=environment_not_followed setting=\"{}\"", setting.text);
+}
+
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
@@ -135,6 +140,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   std::jthread cleaner;     // beside the work: joining the bus is what a restarted service must be quick at
   if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
+  for (const bus::EnvironmentSetting& setting : options.environment) log_setting(setting);
   ExitCode code = kOk;
   {
     using SecondInstance = Heartbeat::SecondInstance;

@@ -94,6 +94,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                     MotionFrames{runtime.bus.frame("camera_color_optical_frame"), runtime.bus.frame("wheel_odom"),
                                  runtime.bus.frame("base_link")});
   }
+  if (!config_.beside.empty()) open_beside();
   if (!source_->info().live) open_publisher();
   if (std::ranges::count(config_.wait_for, "none") > 0) config_.wait_for.clear();
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
@@ -102,6 +103,14 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
     results->close();
     changes->close();
   });
+}
+
+void CameraService::open_beside() {
+  try {
+    beside_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.beside);
+  } catch (const SourceError& error) {
+    throw service::ConfigError(std::string("camera.beside: ") + error.what());
+  }
 }
 
 CameraService::~CameraService() {
@@ -212,6 +221,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
       if (motion_) motion_->publish(frame);
+      if (beside_) beside_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "common/camera/recording/ros_images.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/concurrency/thread_priority.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -159,6 +161,46 @@ void MotionPublisher::publish(const SourceFrame& frame) {
     odometry.pose.pose = {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}};
     odometry.twist.twist = {to_vector(reading.linear_m_s), to_vector(reading.angular_rad_s)};
     write(*wheels_, odometry);
+  }
+}
+
+BesidePublisher::BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
+                                 const std::vector<std::string>& topics)
+    : bus_(bus::connect_raw(options)) {
+  std::unique_ptr<recordings::Reader> recording = recording_of(source_uri);
+  if (!recording) throw SourceError("source " + source_uri + ": only a recording has topics beside its frames");
+  std::vector<std::string> played;
+  for (const std::string& topic : topics) {
+    if (topic == ros2::ros_topic(bus::topics::kTfStatic.name)) {
+      transforms_ = bus.writer(bus::topics::kTfStatic);
+      transforms_.write(lasting_transforms(*recording));
+    } else {
+      played.push_back(open(*recording, topic));
+    }
+  }
+  messages_ = std::make_unique<BesideFrames>(std::move(recording), played);
+}
+
+std::string BesidePublisher::open(const recordings::Reader& recording, const std::string& topic) {
+  constexpr int kDepth = 512;  // of samples: two seconds of an IMU
+  const auto& all = recording.topics();
+  const auto found = std::ranges::find_if(all, [&](const auto& t) { return ros2::ros_topic(t.name) == topic; });
+  const bool fits = found != all.end() && (found->type == "sensor_msgs/Imu" || found->type == "nav_msgs/Odometry");
+  if (!fits) {
+    throw SourceError(recording.name() + ": no topic " + topic + " of an IMU or of wheels; its topics are:\n" +
+                      recordings::list_topics(recording));
+  }
+  bus::RawWriterOptions options;
+  options.qos.depth = kDepth;
+  options.qos.durability = bus::RawQos::Durability::kTransientLocal;  // slam may find it after the first frame
+  const char* const type = found->type == "sensor_msgs/Imu" ? msg::kImuDdsType : msg::kOdometryDdsType;
+  writers_[found->name] = bus_->writer({ros2::dds_topic(topic), type}, options);
+  return found->name;
+}
+
+void BesidePublisher::publish(const SourceFrame& frame) {
+  for (const recordings::RecordedMessage& message : messages_->until(frame.image.stamp_ns)) {
+    writers_.at(message.topic)->write(std::as_bytes(std::span(message.bytes)));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/bus/topics.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
@@ -17,6 +18,7 @@
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
+#include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
@@ -86,6 +88,36 @@ std::uint64_t count_frames(const std::string& uri, std::uint64_t limit) {
   const std::uint64_t frames = camera::make_source(uri)->info().frames;
   if (limit == 0) return frames;
   return frames == 0 ? limit : std::min(frames, limit);
+}
+
+/// --imu and --wheel-odometry of a recorded source come from the recording, and so does tf. Throws ConfigError listing
+/// its topics when it does not have them. None for other sources.
+std::vector<std::string> topics_beside(const RunSetup& setup) {
+  const auto& motion = setup.services.motion;
+  const bool tf = setup.services.base.from_tf();
+  if (!motion.given() && !tf) return {};
+  const std::unique_ptr<recordings::Reader> recording =
+      camera::is_live(setup.source) ? nullptr : camera::recording_of(setup.source);
+  if (!recording) return {};
+  const auto lacks = [&](const std::string& option, const std::string& what) {
+    return ConfigError(fmt::format("{}: {} has no {}; its topics are:\n{}", option, recording->name(), what,
+                                   recordings::list_topics(*recording)));
+  };
+  std::vector<std::string> topics;
+  const auto take = [&](const char* option, const std::string& topic, const char* type) {
+    if (topic.empty()) return;
+    const bool there = std::ranges::any_of(recording->topics(), [&](const recordings::RecordedTopic& recorded) {
+      return ros2::ros_topic(recorded.name) == topic && recorded.type == type && recorded.messages > 0;
+    });
+    if (!there) throw lacks(fmt::format("{} {}", option, topic), fmt::format("{} on this topic", type));
+    topics.push_back(topic);
+  };
+  take("--imu", motion.imu, "sensor_msgs/Imu");
+  take("--wheel-odometry", motion.wheels, "nav_msgs/Odometry");
+  if (tf && std::ranges::none_of(recording->topics(), recordings::is_tf))
+    throw lacks("--camera-in-base tf", "transforms (/tf_static or /tf)");
+  if (tf) topics.push_back(ros2::ros_topic(bus::topics::kTfStatic.name));
+  return topics;
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.
@@ -192,6 +224,8 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
                                         "--wait-for",        fmt::format("{}", fmt::join(wait_for, ",")),
                                         "--groundtruth-out", setup.groundtruth_path()};
   if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
+  if (!setup.beside.empty())
+    arguments.insert(arguments.end(), {"--beside", fmt::format("{}", fmt::join(setup.beside, ","))});
   return arguments;
 }
 
@@ -233,6 +267,7 @@ RunSetup prepare_run(const RunOptions& options) {
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
   setup.total_frames = setup.replay ? setup.replay.frames : count_frames(setup.source, setup.frames);
+  if (!setup.replay) setup.beside = topics_beside(setup);
   choose_detector(setup);
   choose_map(setup);
   process::make_out_folder(setup.out_dir);

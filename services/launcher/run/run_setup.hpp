@@ -71,9 +71,9 @@ struct ServiceSettings {
 struct RunOptions {
   std::string source;
   std::string pace = "realtime";
-  service::ConfigSources config;     ///< for any service, with the options of services
-  std::vector<std::string> dds_of;   ///< "SERVICE=VENDOR": another DDS for one service
-  std::string detector = "auto";  ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
+  service::ConfigSources config;    ///< for any service, with the options of services
+  std::vector<std::string> dds_of;  ///< "SERVICE=VENDOR": another DDS for one service
+  std::string detector = "auto";    ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string out_dir;
   bool dense = false;                      ///< also fuse a dense static map
   bool viewer = false;                     ///< also show the run in the browser
@@ -118,6 +118,7 @@ struct RunSetup : RunOptions {
   std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
   bool save_map_asked = false;  ///< the user named the file
   ReplaySetup replay;
+  std::vector<std::string> beside;  ///< ROS names of topics of a recorded source that slam needs, for --beside
 
   /// Where the services write their parts of --trace.
   std::string trace_folder() const { return out_dir + "/trace"; }
