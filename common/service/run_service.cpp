@@ -164,6 +164,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     code = definition.run(runtime);
     bound_end(code);
   }
+  log_repeated_events();
   SPDLOG_INFO("event=ended exit={}", static_cast<int>(code));
   return code;
 }

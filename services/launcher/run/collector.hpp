@@ -37,6 +37,7 @@ class Collector {
   std::string active_services(const Tolerated& tolerated = {}) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
+  std::vector<std::string> repeated_notices() const;
   bool tracked_any() const;
   /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
   /// ever, for they would wait for that thread, but have no receiver any more.
