@@ -191,7 +191,7 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     binder.add_options(app, common.config.given);
     if (definition.add_options) definition.add_options(app, common.config.given);
     try {
-      app.parse(argc, argv);
+      parse(app, argc, argv);
     } catch (const CLI::ParseError& error) {  // or --help, --version
       return app.exit(error) == 0 ? kOk : kUsageOrConfig;
     }
