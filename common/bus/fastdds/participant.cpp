@@ -51,19 +51,19 @@ void configure_library_once() {
 class WithoutServerOfEnvironment {
  public:
   WithoutServerOfEnvironment() {
-    if (const char* value = std::getenv(kName)) {
+    if (const char* value = std::getenv(kVariable)) {
       value_ = value;
-      ::unsetenv(kName);
+      ::unsetenv(kVariable);
     }
   }
   ~WithoutServerOfEnvironment() {
-    if (value_) ::setenv(kName, value_->c_str(), 1);  // processes that we start read it too
+    if (value_) ::setenv(kVariable, value_->c_str(), 1);  // processes that we start read it too
   }
   WithoutServerOfEnvironment(const WithoutServerOfEnvironment&) = delete;
   WithoutServerOfEnvironment& operator=(const WithoutServerOfEnvironment&) = delete;
 
  private:
-  static constexpr const char* kName = "ROS_DISCOVERY_SERVER";
+  static constexpr const char* kVariable = "ROS_DISCOVERY_SERVER";
   std::optional<std::string> value_;
 };
 

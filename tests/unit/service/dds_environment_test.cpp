@@ -75,7 +75,8 @@ TEST_F(DdsEnvironment, profiles_are_named_with_the_options_in_their_place) {
   const DdsSetting text = follow(
       "CYCLONEDDS_URI",
       R"(<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="eth0"/></Interfaces></General>)"
-      R"(<Discovery><Peers><Peer address="10.0.0.7"/><Peer Address="10.0.0.8"/></Peers></Discovery></Domain></CycloneDDS>)");
+      R"(<Discovery><Peers><Peer address="10.0.0.7"/><Peer Address="10.0.0.8"/></Peers></Discovery>)"
+      R"(</Domain></CycloneDDS>)");
   EXPECT_FALSE(text.followed);
   EXPECT_THAT(text.text, AllOf(HasSubstr("CYCLONEDDS_URI"), HasSubstr("--peers 10.0.0.7,10.0.0.8"),
                                HasSubstr("--interface eth0")));
