@@ -118,9 +118,9 @@ class BusProblems {
   int count_ = 0;
 };
 
+/// rtd run warns once for all its services.
 void log_setting(const bus::EnvironmentSetting& setting) {
-  if (setting.followed) return SPDLOG_INFO("event=environment_followed setting=\"{}\"", setting.text);
-  SPDLOG_WARN("event=environment_not_followed setting=\"{}\"", setting.text);
+  SPDLOG_INFO("event=environment_{}followed setting=\"{}\"", setting.followed ? "" : "not_", setting.text);
 }
 
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
