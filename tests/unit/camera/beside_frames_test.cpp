@@ -15,7 +15,7 @@ using test::McapFile;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kOneMs = 1'000'000;
 
 class BesideFramesTest : public ::testing::Test {
  protected:
@@ -42,7 +42,7 @@ class BesideFramesTest : public ::testing::Test {
     std::vector<std::int64_t> stamps_ms;
     for (const auto& message : beside.until(static_cast<std::int64_t>(stamp_s * 1e9))) {
       EXPECT_EQ(message.wire, ros::Wire::kCdr);
-      stamps_ms.push_back(msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp) / kMs);
+      stamps_ms.push_back(msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp) / kOneMs);
     }
     return stamps_ms;
   }

@@ -42,14 +42,14 @@ constexpr std::array kCommon = {
     CommonSetting{"viewer", "viewer.port"},
 };
 
-constexpr std::size_t kIndent = 2, kLongestLine = 110;
+constexpr std::size_t kIndent = 2, kLongestSetting = 110;
 
 std::string line_of(const PrintedSetting& setting) {
   std::string line = fmt::format("{:<28} {:<12} {}", setting.key, setting.value, setting.help);
-  if (line.size() <= kLongestLine) return line + '\n';
+  if (line.size() <= kLongestSetting) return line + '\n';
   const std::size_t option = setting.help.rfind(" (--");  // how to change it stays
   const std::string end = "..." + (option == std::string::npos ? std::string() : setting.help.substr(option));
-  line.resize(kLongestLine - std::min(kLongestLine, end.size()));
+  line.resize(kLongestSetting - std::min(kLongestSetting, end.size()));
   return line.substr(0, line.rfind(' ')) + ' ' + end + '\n';
 }
 
