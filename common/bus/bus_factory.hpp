@@ -46,6 +46,13 @@ std::string default_vendor();
 /// "fastdds or cyclonedds": those that are built in.
 std::string vendor_names();
 
+/// A variable of the environment about DDS, what becomes of it here and, if it is not followed, what to write instead.
+struct EnvironmentSetting {
+  std::string text;
+  bool followed = false;
+  bool operator==(const EnvironmentSetting&) const = default;
+};
+
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
   std::string vendor = default_vendor();  ///< one of available_vendors()
@@ -58,6 +65,7 @@ struct BusOptions {
   NetworkOptions network;
   SecurityOptions security;
   bool iceoryx = false;
+  std::vector<EnvironmentSetting> environment;  ///< for messages: what it says is in the options already
   /// Called with one line for each problem that keeps other participants from being matched, e.g. a participant of
   /// another vendor in a secured domain. Runs on a bus thread, maybe several times: be brief, do not call the bus.
   std::function<void(const std::string& problem)> on_problem = {};

@@ -87,7 +87,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kOdometry.name, {"slam", "link"}, kOnlookers},
       {kPose.name, {"slam", "link"}, kOnlookers},
       {kTf.name, {"slam", "link"}, kOnlookers},
-      {kTfStatic.name, {}, {"slam"}},
+      {kTfStatic.name, {"camera"}, {"slam"}},
       {kPath.name, {"slam"}, kOnlookers},
       {kMapPoints.name, {"slam"}, kOnlookers},
       {kDensePoints.name, {"dense"}, kOnlookers},

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "common/geometry/transform_log.hpp"
 
@@ -15,17 +16,12 @@ namespace {
 
 constexpr double kSamePixel_px = 0.5;
 
-/// The farthest that a point of the image lies apart in the two pinhole images, px.
-double difference_px(const geometry::CameraModel& a, const geometry::CameraModel& b) {
-  const auto &p = a.parameters(), &q = b.parameters();
-  double largest_px = 0;
-  for (const double x : {0.0, static_cast<double>(p.width)}) {
-    for (const double y : {0.0, static_cast<double>(p.height)}) {
-      const Eigen::Vector2d there = b.project(a.unproject({x, y}, 1.0));
-      largest_px = std::max({largest_px, std::abs(there.x() - x), std::abs(there.y() - y)});
-    }
-  }
-  return p.width == q.width && p.height == q.height ? largest_px : INFINITY;
+/// Whether two images differ in the number of pixels only, by 1 %.
+bool same_shape(cv::Size a, cv::Size b) {
+  constexpr double kTolerance = 0.01;
+  if (a.empty() || b.empty()) return a == b;
+  const double ratio = static_cast<double>(a.width) * b.height / (static_cast<double>(a.height) * b.width);
+  return std::abs(ratio - 1) < kTolerance;
 }
 
 std::string text_of(const geometry::CameraModel& camera) {
@@ -39,6 +35,18 @@ bool named_as_registered(const std::string& topic) {
 }
 
 }  // namespace
+
+double difference_px(const geometry::CameraModel& a, const geometry::CameraModel& b) {
+  const auto &p = a.parameters(), &q = b.parameters();
+  double largest_px = 0;
+  for (const double x : {0.0, static_cast<double>(p.width)}) {
+    for (const double y : {0.0, static_cast<double>(p.height)}) {
+      const Eigen::Vector2d there = b.project(a.unproject({x, y}, 1.0));
+      largest_px = std::max({largest_px, std::abs(there.x() - x), std::abs(there.y() - y)});
+    }
+  }
+  return p.width == q.width && p.height == q.height ? largest_px : INFINITY;
+}
 
 bool names_a_place(const std::string& frame_id) {
   return !geometry::bare_frame(frame_id).empty() && frame_id != "0";
@@ -65,11 +73,19 @@ std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth)
   return fmt::format("{} is in frame '{}', {} in '{}'", depth.topic, depth.frame_id, color.topic, color.frame_id);
 }
 
-SourceError unregistered(const std::string& source, const std::string& cause, const std::string& missing) {
-  return SourceError(fmt::format(
-      "{}: depth is not registered to colour: {}. To register it here, {}. If it is registered all the same: "
-      "?registered=1",
-      source, cause, missing));
+SourceError unregistered(const std::string& source, const ImageOrigin& color, const ImageOrigin& depth,
+                         const std::string& missing) {
+  const std::string text = fmt::format("{}: depth is not registered to colour: {}. To register it here, {}", source,
+                                       why_unregistered(color, depth), missing);
+  if (!same_shape(color.size_px, depth.size_px)) return SourceError(text);
+  return SourceError(text + ". If it is registered all the same: ?registered=1");
+}
+
+cv::Mat scaled_to(cv::Size color_px, const cv::Mat& depth) {
+  if (depth.empty() || depth.size() == color_px || !same_shape(depth.size(), color_px)) return depth;
+  cv::Mat scaled;
+  cv::resize(depth, scaled, color_px, 0, 0, cv::INTER_NEAREST);  // between two surfaces there is none
+  return scaled;
 }
 
 }  // namespace rtd::camera

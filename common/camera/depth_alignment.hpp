@@ -29,7 +29,16 @@ bool names_a_place(const std::string& frame_id);
 /// Both images are in one frame that has a name: what differs is the raster alone.
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth);
 
-/// The error for depth that cannot be registered: why it must be, what is missing and what the user can do.
-SourceError unregistered(const std::string& source, const std::string& cause, const std::string& missing);
+/// The farthest that a point of the image lies apart in the two pinhole images, px; infinite for images of two sizes.
+double difference_px(const geometry::CameraModel& a, const geometry::CameraModel& b);
+
+/// The error for depth that cannot be registered: why it must be, what is missing and what the user can do. Depth of
+/// another shape than colour cannot be taken as it is, and that is not advised.
+SourceError unregistered(const std::string& source, const ImageOrigin& color, const ImageOrigin& depth,
+                         const std::string& missing);
+
+/// Depth that is registered (?registered=1) in fewer or more pixels, as many as colour has; as it is when it has the
+/// size or another shape.
+cv::Mat scaled_to(cv::Size color_px, const cv::Mat& depth);
 
 }  // namespace rtd::camera

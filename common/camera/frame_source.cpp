@@ -65,6 +65,10 @@ std::uint64_t SourceCounters::frames_left_out() const {
 }
 
 void SkipLog::add(SkippedInput input) {
+  if (input.reason != SkipReason::kNoDepthPartner && input.reason != SkipReason::kOverrun) {
+    ++unusable_;
+    newest_ = input.detail;
+  }
   ++counters_.skipped[static_cast<std::size_t>(input.reason)];
   skipped_.push_back(std::move(input));
 }
@@ -72,6 +76,12 @@ void SkipLog::add(SkippedInput input) {
 void SkipLog::number(SourceFrame& frame) {
   frame.image.seq = counters_.frames++;
   if (!frame.has_depth) ++counters_.frames_without_depth;
+  unusable_ = 0;
+}
+
+std::string SkipLog::why_none() const {
+  if (unusable_ == 0) return {};
+  return "no image can be used, " + std::to_string(unusable_) + " left out, the newest: " + newest_;
 }
 
 std::string SkipLog::summary() const {

@@ -159,10 +159,15 @@ class SkipLog {
   std::vector<SkippedInput> take() { return std::exchange(skipped_, {}); }
   /// ": 2 x size_mismatch, first: ..."; empty when nothing was left out.
   std::string summary() const;
+  /// What has left out all images since the last frame: how many, and the newest. Empty when nothing was left out for
+  /// what it is (that colour and depth do not pair, or came too fast, has words of its own).
+  std::string why_none() const;
 
  private:
   SourceCounters counters_;
   std::vector<SkippedInput> skipped_;
+  std::uint64_t unusable_ = 0;  ///< since the last frame
+  std::string newest_;          ///< of these
 };
 
 /// A source that plays a file: what its frames are made of is left to the derived class.

@@ -16,6 +16,7 @@ namespace rtd::camera {
 struct ImageRead {
   cv::Mat image;
   std::optional<SkippedInput> problem;
+  std::string remark = {};  ///< what is wrong with a message that can be used all the same; empty when nothing is
 };
 
 /// PNG, JPEG or PPM as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey).

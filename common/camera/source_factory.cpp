@@ -182,6 +182,11 @@ std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
   return beside;
 }
 
+std::unique_ptr<recordings::Reader> recording_of(const std::string& text) {
+  const SourceUri uri = parse_source_uri(text);
+  return is_recording(uri) ? open_file(uri) : nullptr;
+}
+
 std::unique_ptr<FrameSource> make_source(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (is_of_kind(text, SourceKind::kFolder)) return make_folder_source(uri);

@@ -26,6 +26,9 @@ SourceUri parse_source_uri(const std::string& text);
 /// sources. Throws SourceError.
 std::vector<RecordedTopic> topics_beside_frames(const std::string& uri);
 
+/// The recording that a source plays; null for other sources. Throws SourceError.
+std::unique_ptr<recordings::Reader> recording_of(const std::string& uri);
+
 /// The value of `tolerance_ms`, ns: more than 0, at most 1000 ms. Throws SourceError naming the URI.
 std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value);
 /// The value of a parameter that is 0 or 1. Throws SourceError naming URI and key.

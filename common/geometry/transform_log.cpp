@@ -118,4 +118,10 @@ bool TransformLog::knows(const std::string& frame) const {
          std::ranges::any_of(links_, [&](const auto& link) { return link.second.parent == bare; });
 }
 
+std::set<std::string> TransformLog::frames() const {
+  std::set<std::string> names;
+  for (const auto& [child, link] : links_) names.insert({child, link.parent});
+  return names;
+}
+
 }  // namespace rtd::geometry

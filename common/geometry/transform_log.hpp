@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,8 @@ class TransformLog {
   std::optional<Eigen::Isometry3d> between(const std::string& target, const std::string& source) const;
   /// Whether a transform begins or ends at this frame.
   bool knows(const std::string& frame) const;
+  /// All of these, sorted.
+  std::set<std::string> frames() const;
 
  private:
   /// A frame below its parent.

@@ -3,6 +3,7 @@
 #include "common/io/text.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
@@ -88,6 +89,18 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::string without_numbers(std::string_view text) {
+  const auto in_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/'; };
+  const auto in_number = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0 || c == '.'; };
+  std::string kind;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) != 0 && (i == 0 || !in_word(text[i - 1]));
+    kind += begins ? '#' : text[i];
+    while (begins && i + 1 < text.size() && in_number(text[i + 1])) ++i;
+  }
+  return kind;
 }
 
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {

@@ -27,6 +27,9 @@ std::optional<std::string> read_text(const std::filesystem::path& file);
 /// The whole text as a number; empty when it is not one. "nan" and "inf" are numbers here: check them.
 std::optional<double> parse_number(std::string_view text);
 
+/// The text with '#' in place of each number that stands alone: what events of one kind have in common.
+std::string without_numbers(std::string_view text);
+
 /// The candidate with the smallest edit distance to `name`; empty when none is near.
 std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
 

@@ -122,11 +122,17 @@ struct Image {
   std::uint32_t height = 0, width = 0;
   std::string encoding;  ///< "mono8", "bgr8", ...
   std::uint8_t is_bigendian = 0;
-  std::uint32_t step = 0;  ///< bytes of a row
+  std::uint32_t step = 0;  ///< bytes of a row; several drivers leave it at 0
   std::vector<std::uint8_t> data;
 };
 RTD_FIELDS(sensor_msgs, Image, header, height, width, encoding, is_bigendian, step, data)
+/// Whole pixels without bytes between rows: then the step is not needed.
+inline bool is_dense(const Image& image) {
+  const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
+  return pixels > 0 && !image.data.empty() && image.data.size() % pixels == 0;
+}
 inline const char* broken_rule(const Image& image) {
+  if (is_dense(image)) return nullptr;
   if (image.step < image.width) return "step";  // no encoding has less than a byte for a pixel
   return std::uint64_t{image.step} * image.height == image.data.size() ? nullptr : "data";
 }

@@ -14,6 +14,8 @@
 
 #include "common/msg/services.hpp"
 #include "common/security/keystore_layout.hpp"
+#include "common/service/dds_environment.hpp"
+#include "common/service/model_locator.hpp"
 
 namespace rtd::service {
 namespace {
@@ -71,6 +73,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   bus::BusOptions options = config.options;
   options.participant_name = participant_name;
   options.security = security_options(config.security, participant_name, options.robot);
+  if (options.vendor != "inprocess") options.environment = follow_dds_environment(process_environment(), options);
   return options;
 }
 

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 
@@ -59,10 +60,42 @@ void wrap_help(CLI::App& app) {
   app.formatter(std::make_shared<WrappedHelp>());
 }
 
+namespace {
+
+/// The command whose options were written: that of the last subcommand.
+const CLI::App& innermost(const CLI::App& app) {
+  const auto commands = app.get_subcommands();
+  return commands.empty() ? app : innermost(*commands.front());
+}
+
+/// "--sorce (did you mean --source?)".
+std::string with_advice(const CLI::App& command, const std::string& word) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  const std::string near = word.starts_with("--") ? io::nearest_name(word.substr(0, word.find('=')), known) : "";
+  return near.empty() ? word : word + " (did you mean " + near + "?)";
+}
+
+}  // namespace
+
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::RequiredError&) {
+    std::vector<std::string> unknown;
+    for (const std::string& word : app.remaining(true)) {
+      if (word.starts_with("-") && word.size() > 1) unknown.push_back(with_advice(innermost(app), word));
+    }
+    if (unknown.empty()) throw;
+    throw CLI::ExtrasError(unknown);
+  }
+}
+
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
   hold_standard_streams();
   try {
-    app.parse(argc, argv);
+    parse(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }

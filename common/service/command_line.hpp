@@ -21,6 +21,10 @@ class App;
 /// What command-line tools share.
 namespace rtd::service {
 
+/// app.parse(), but options that do not exist are named, with the nearest one that does, before those that are missing:
+/// who writes --sorce has not forgotten --source. Throws CLI::ParseError.
+void parse(CLI::App& app, int argc, char** argv);
+
 /// The main function of a tool: parses the command line into what `app` is bound to, then runs `work`. Returns the exit
 /// code of `work`; 0 after --help, 2 for a wrong command line.
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);

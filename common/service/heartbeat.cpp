@@ -284,8 +284,10 @@ bool Heartbeat::check_peers() {
     const bool ended = peer.status.state == msg::ServiceState::kFinished;
     const PeerHealth health = ended ? PeerHealth::kAlive : judge(evidence);
     if (health == peer.health) continue;
-    SPDLOG_WARN("event=peer_{} service={} pid={} silent_ms={}", to_string(health), name, peer.status.pid,
-                evidence.silent_ns / 1'000'000);
+    const bool trouble = health == PeerHealth::kDead || health == PeerHealth::kHung;
+    SPDLOG_LOGGER_CALL(spdlog::default_logger_raw(), trouble ? spdlog::level::warn : spdlog::level::info,
+                       "event=peer_{} service={} pid={} silent_ms={}", to_string(health), name, peer.status.pid,
+                       evidence.silent_ns / 1'000'000);
     peer.health = health;
     changed = true;
   }
@@ -307,7 +309,7 @@ bool Heartbeat::check_progress() {
   if (stuck_.empty()) {
     SPDLOG_INFO("event=worker_continues");
   } else {
-    SPDLOG_ERROR("event=worker_stuck for_ms={} cause=\"{}\"", stuck_ns / 1'000'000, stuck_);
+    SPDLOG_WARN("event=worker_stuck for_ms={} cause=\"{}\"", stuck_ns / 1'000'000, stuck_);
   }
   return true;
 }

@@ -13,10 +13,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <ctime>
 #include <mutex>
 #include <string_view>
+#include <utility>
 
 #include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 
 namespace rtd::service {
 namespace {
@@ -26,16 +29,40 @@ class Logger : public spdlog::logger {
  public:
   using spdlog::logger::logger;
 
+  void log_counted() {
+    const std::lock_guard lock(mutex_);
+    for (const std::string& line : repeated_.take_counted()) {
+      spdlog::logger::sink_it_(spdlog::details::log_msg(name(), spdlog::level::info, line));
+    }
+  }
+
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
     const std::string_view line(message.payload.data(), message.payload.size());
-    if (io::is_printable(line)) return spdlog::logger::sink_it_(message);
-    const std::string shown = io::printable(line);
+    const std::lock_guard lock(mutex_);
+    std::optional<std::string> repeated = "";
+    if (message.level >= spdlog::level::warn) repeated = repeated_.note(line, message.time);
+    if (!repeated) return;
+    if (repeated->empty() && io::is_printable(line)) return spdlog::logger::sink_it_(message);
+    const std::string shown = io::printable(line) + *repeated;
     spdlog::details::log_msg copy = message;
     copy.payload = shown;
     spdlog::logger::sink_it_(copy);
   }
+
+ private:
+  std::mutex mutex_;
+  RepeatedEvents repeated_;
 };
+
+std::string clock_text(RepeatedEvents::Time time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  char text[16];
+  std::strftime(text, sizeof text, "%H:%M:%S", &local);
+  return text;
+}
 
 /// "cause" as a field's name; empty when it cannot be one.
 std::string field_name(std::string_view key) {
@@ -100,6 +127,40 @@ void init_logging(const std::string& service, const std::string& level) {
   logger->set_level(spdlog::level::from_str(level));
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(std::move(logger));
+}
+
+void log_repeated_events() {
+  if (const auto logger = std::dynamic_pointer_cast<Logger>(spdlog::default_logger())) logger->log_counted();
+}
+
+std::optional<std::string> RepeatedEvents::note(std::string_view line, Time now) {
+  if (kinds_.size() >= kMaxKinds) kinds_.clear();
+  const auto [found, is_new] = kinds_.try_emplace(io::without_numbers(line));
+  Kind& kind = found->second;
+  if (!is_new && now - kind.written < kGroup) {
+    if (kind.counted++ == 0) kind.first = now;
+    kind.last = now;
+    kind.newest = line;
+    return std::nullopt;
+  }
+  const std::string text =
+      kind.counted == 0 ? "" : " repeated=" + std::to_string(kind.counted) + " first=" + clock_text(kind.first);
+  kind.written = now;
+  kind.counted = 0;
+  return text;
+}
+
+std::vector<std::string> RepeatedEvents::take_counted() {
+  std::vector<std::string> lines;
+  for (const auto& [key, kind] : std::exchange(kinds_, {})) {
+    if (kind.counted > 0) lines.push_back(summary(kind));
+  }
+  return lines;
+}
+
+std::string RepeatedEvents::summary(const Kind& kind) {
+  return kind.newest + " repeated=" + std::to_string(kind.counted) + " first=" + clock_text(kind.first) +
+         " last=" + clock_text(kind.last);
 }
 
 bool RateLimit::pass() {

@@ -117,6 +117,11 @@ class BusProblems {
   int count_ = 0;
 };
 
+/// rtd run warns once for all its services.
+void log_setting(const bus::EnvironmentSetting& setting) {
+  SPDLOG_INFO("event=environment_{}followed setting=\"{}\"", setting.followed ? "" : "not_", setting.text);
+}
+
 ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_config, Pace pace) {
   StopToken stop;
   const SignalWatcher signals(stop);
@@ -134,6 +139,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   std::jthread cleaner;     // beside the work: joining the bus is what a restarted service must be quick at
   if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
+  for (const bus::EnvironmentSetting& setting : options.environment) log_setting(setting);
   ExitCode code = kOk;
   {
     using SecondInstance = Heartbeat::SecondInstance;
@@ -157,6 +163,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     code = definition.run(runtime);
     bound_end(code);
   }
+  log_repeated_events();
   SPDLOG_INFO("event=ended exit={}", static_cast<int>(code));
   return code;
 }
@@ -183,7 +190,7 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
     binder.add_options(app, common.config.given);
     if (definition.add_options) definition.add_options(app, common.config.given);
     try {
-      app.parse(argc, argv);
+      parse(app, argc, argv);
     } catch (const CLI::ParseError& error) {  // or --help, --version
       return app.exit(error) == 0 ? kOk : kUsageOrConfig;
     }

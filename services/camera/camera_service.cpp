@@ -18,6 +18,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/live_camera.hpp"
+#include "services/camera/source_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -95,6 +96,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                     MotionFrames{runtime.bus.frame("camera_color_optical_frame"), runtime.bus.frame("wheel_odom"),
                                  runtime.bus.frame("base_link")});
   }
+  if (!config_.beside.empty()) open_beside();
   if (!source_->info().live) open_publisher();
   if (std::ranges::count(config_.wait_for, "none") > 0) config_.wait_for.clear();
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
@@ -103,6 +105,14 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
     results->close();
     changes->close();
   });
+}
+
+void CameraService::open_beside() {
+  try {
+    beside_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.beside);
+  } catch (const SourceError& error) {
+    throw service::ConfigError(std::string("camera.beside: ") + error.what());
+  }
 }
 
 CameraService::~CameraService() {
@@ -130,11 +140,7 @@ CameraService::Outcome CameraService::open() {
   }
   if (source_->info().live) open_publisher();
   left_out_.open(source_->info().frames, static_cast<std::uint64_t>(config_.frames), source_->counters());
-  const auto& camera = source_->info().camera.parameters();
-  SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", source_->info().uri,
-              source_->info().frames, camera.width, camera.height, camera.fx, source_->info().fps);
-  for (const std::string& remark : source_->info().remarks) SPDLOG_WARN("event=source_remark cause=\"{}\"", remark);
-  for (const std::string& note : source_->info().notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
+  log_opened(source_->info());
   return Outcome::kDone;
 }
 
@@ -191,7 +197,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     if (!item) break;
     counters_ = item->counters;
     left_out_.add(*item);
-    log_skipped(*item);
+    log_skipped(*item, skip_log_);
     if (!item->error.empty()) return fail("the source failed: " + item->error);
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
@@ -211,13 +217,16 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
   while (!runtime_.stop.stop_requested()) {
     take_results();
     const service::PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
-    log_timeline(decision, frame);
+    log_timeline(decision, frame.image.seq, config_.max_gap_s);
+    if (decision.action == service::PaceAction::kSkipLate && late_log_.pass())
+      SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
     if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);
     if (decision.action == service::PaceAction::kSkipLate) return Outcome::kDone;
     if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
       if (motion_) motion_->publish(frame);
+      if (beside_) beside_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);
@@ -308,28 +317,6 @@ void CameraService::resend() {
               config_.resend_after_ms);
   for (const vision::RgbdImage& image : in_flight_) publisher_.publish(image);
   pacer_.resent();
-}
-
-void CameraService::log_skipped(const ReadItem& item) {
-  for (const SkippedInput& skipped : item.skipped) {
-    if (!skip_log_.pass()) continue;
-    SPDLOG_WARN("event=input_skipped reason={} total={} detail=\"{}\"", to_string(skipped.reason),
-                item.counters.skipped_total(), skipped.detail);
-  }
-}
-
-void CameraService::log_timeline(const service::PaceDecision& decision, const SourceFrame& frame) {
-  if (decision.cut_gap_ns > 0) {
-    SPDLOG_WARN("event=gap_cut frame={} cut_s={:.3f} played_s={:g}", frame.image.seq,
-                static_cast<double>(decision.cut_gap_ns) * 1e-9, config_.max_gap_s);
-  }
-  if (decision.shifted_ns > 0) {
-    SPDLOG_WARN("event=timeline_shifted frame={} by_s={:.3f} cause=\"the source is slower than its stamps\"",
-                frame.image.seq, static_cast<double>(decision.shifted_ns) * 1e-9);
-  }
-  if (decision.action == service::PaceAction::kSkipLate && late_log_.pass()) {
-    SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
-  }
 }
 
 void CameraService::note_depth_offset(const SourceFrame& frame) {

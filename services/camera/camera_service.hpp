@@ -43,6 +43,7 @@ struct ServiceConfig {
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;
+  std::vector<std::string> beside;
 
   void bind(auto& binder) {
     binder.field("source", source, source_help()).option("--source");
@@ -59,6 +60,11 @@ struct ServiceConfig {
         .option("--wait-for");
     binder.field("groundtruth_out", groundtruth_out, "file that gets the ground truth in TUM format, empty = none")
         .option("--groundtruth-out");
+    binder
+        .field("beside", beside,
+               "topics of a recording that are published with its frames: an IMU, wheels, /tf_static; rtd run fills in "
+               "those of --imu, --wheel-odometry and --camera-in-base tf")
+        .option("--beside");
   }
 };
 
@@ -83,6 +89,7 @@ class CameraService {
 
   /// Waits for the first frame of a running camera.
   Outcome open();
+  void open_beside();
   /// Once the size of the images is known.
   void open_publisher();
   void report_wait(const std::string& what);
@@ -100,8 +107,6 @@ class CameraService {
   void send(const vision::RgbdImage& image);
   void send_truth(const SourceFrame& frame);
   void resend();
-  void log_skipped(const ReadItem& item);
-  void log_timeline(const service::PaceDecision& decision, const SourceFrame& frame);
   void note_depth_offset(const SourceFrame& frame);
   void note_depth(const SourceFrame& frame);
   void report_counters();
@@ -120,6 +125,7 @@ class CameraService {
   FramePublisher publisher_;
   bus::Writer<msg::PoseStamped> truth_;
   std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
+  std::optional<BesidePublisher> beside_;  ///< of a recording that has them
   const std::shared_ptr<bus::SourceGate> slam_;
   bus::Reader<msg::TrackingResult> tracking_;
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "common/camera/recording/ros_images.hpp"
+#include "common/camera/source_factory.hpp"
 #include "common/concurrency/thread_priority.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -98,9 +100,13 @@ FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Ove
 void FramePublisher::open(cv::Size size_px) {
   frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
                              static_cast<std::uint32_t>(size_px.height), on_match(on_matched_));
+  size_px_ = size_px;
+  source_id_ = random_id();
+  info_sent_ = false;
 }
 
 bool FramePublisher::publish(const vision::RgbdImage& image) {
+  if (image.color_bgr.size() != size_px_) open(image.color_bgr.size());
   const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
   jpegs_.offer(image.color_bgr, image.stamp_ns);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
@@ -155,6 +161,46 @@ void MotionPublisher::publish(const SourceFrame& frame) {
     odometry.pose.pose = {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}};
     odometry.twist.twist = {to_vector(reading.linear_m_s), to_vector(reading.angular_rad_s)};
     write(*wheels_, odometry);
+  }
+}
+
+BesidePublisher::BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
+                                 const std::vector<std::string>& topics)
+    : bus_(bus::connect_raw(options)) {
+  std::unique_ptr<recordings::Reader> recording = recording_of(source_uri);
+  if (!recording) throw SourceError("source " + source_uri + ": only a recording has topics beside its frames");
+  std::vector<std::string> played;
+  for (const std::string& topic : topics) {
+    if (topic == ros2::ros_topic(bus::topics::kTfStatic.name)) {
+      transforms_ = bus.writer(bus::topics::kTfStatic);
+      transforms_.write(lasting_transforms(*recording));
+    } else {
+      played.push_back(open(*recording, topic));
+    }
+  }
+  messages_ = std::make_unique<BesideFrames>(std::move(recording), played);
+}
+
+std::string BesidePublisher::open(const recordings::Reader& recording, const std::string& topic) {
+  constexpr int kDepth = 512;  // of samples: two seconds of an IMU
+  const auto& all = recording.topics();
+  const auto found = std::ranges::find_if(all, [&](const auto& t) { return ros2::ros_topic(t.name) == topic; });
+  const bool fits = found != all.end() && (found->type == "sensor_msgs/Imu" || found->type == "nav_msgs/Odometry");
+  if (!fits) {
+    throw SourceError(recording.name() + ": no topic " + topic + " of an IMU or of wheels; its topics are:\n" +
+                      recordings::list_topics(recording));
+  }
+  bus::RawWriterOptions options;
+  options.qos.depth = kDepth;
+  options.qos.durability = bus::RawQos::Durability::kTransientLocal;  // slam may find it after the first frame
+  const char* const type = found->type == "sensor_msgs/Imu" ? msg::kImuDdsType : msg::kOdometryDdsType;
+  writers_[found->name] = bus_->writer({ros2::dds_topic(topic), type}, options);
+  return found->name;
+}
+
+void BesidePublisher::publish(const SourceFrame& frame) {
+  for (const recordings::RecordedMessage& message : messages_->until(frame.image.stamp_ns)) {
+    writers_.at(message.topic)->write(std::as_bytes(std::span(message.bytes)));
   }
 }
 

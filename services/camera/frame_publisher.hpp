@@ -6,15 +6,18 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "services/camera/core/beside_frames.hpp"
 
 namespace rtd::camera {
 
@@ -78,6 +81,26 @@ class MotionPublisher {
   std::unique_ptr<bus::RawWriter> imu_, wheels_;
 };
 
+/// Publishes the messages that a recording has beside its frames, as their topics are named in it. One thread.
+class BesidePublisher {
+ public:
+  /// `topics`: ROS names; "/tf_static" stands for the transforms that last. Throws SourceError when the recording does
+  /// not have one, or the source is none; BusError when the bus refuses.
+  BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
+                  const std::vector<std::string>& topics);
+  /// As MotionPublisher's.
+  void publish(const SourceFrame& frame);
+
+ private:
+  /// Opens the writer of a topic and gives its name in the recording.
+  std::string open(const recordings::Reader& recording, const std::string& topic);
+
+  std::shared_ptr<bus::RawBus> bus_;
+  std::map<std::string, std::unique_ptr<bus::RawWriter>> writers_;  ///< by name in the recording
+  bus::Writer<msg::TFMessage> transforms_;
+  std::unique_ptr<BesideFrames> messages_;
+};
+
 /// Copies the rows packed and clears the rest of the `size` bytes of a message.
 void copy_packed(const cv::Mat& image, std::uint8_t* bytes, std::size_t size);
 
@@ -112,10 +135,10 @@ class FramePublisher {
   FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
                  std::function<void()> on_matched);
 
-  /// Chooses the frame topic for images of this size; to be called once, before the first frame. Throws bus::BusError
-  /// when images are too large.
+  /// Chooses the frame topic for images of this size, before the first frame. Throws bus::BusError when images are too
+  /// large.
   void open(cv::Size size_px);
-  /// False when the bus did not take the raw frame.
+  /// False when the bus did not take the raw frame. A frame of another size opens its topic, as a source of its own.
   bool publish(const vision::RgbdImage& image);
   /// Readers of the raw frame and of the JPEG topic.
   int frame_readers() const { return frames_.matched(); }
@@ -130,6 +153,7 @@ class FramePublisher {
   bus::FrameWriter frames_;
   bus::Writer<msg::CameraInfo> infos_;
   bool info_sent_ = false;
+  cv::Size size_px_;
   JpegPublisher jpegs_;
 };
 

@@ -211,7 +211,7 @@ void FilterService::forget_views(const msg::FrameView& frame, const char* cause)
 /// The other services wait for every frame: a frame that cannot be used has no features.
 void FilterService::publish_no_features(const msg::FrameView& frame, const std::string& cause) {
   runtime_.heartbeat.set_metric(service::metric::kFramesDefective, static_cast<double>(++defective_));
-  if (defect_log_.pass()) SPDLOG_ERROR("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
+  if (defect_log_.pass()) SPDLOG_WARN("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
   fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
   writer_.write(*message_);
 }

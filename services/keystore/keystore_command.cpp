@@ -31,6 +31,20 @@ std::string advice(const security::EnclaveFiles& files) {
   return open ? fmt::format("; other users can read its key: chmod 600 {}", files.key().string()) : std::string();
 }
 
+/// For people: how many topics an enclave may use; --verbose names them.
+std::string summarize(const security::Enclave& enclave, std::int64_t now_s) {
+  const security::Permissions& permissions = enclave.permissions;
+  const auto [first, last] = permissions.domains;
+  const bool every = first == 0 && last >= 230;
+  return fmt::format("ok    {:<20} until {} ({} days)  {:<13} {:>3} topics out  {:>3} in{}\n", enclave.name,
+                     security::to_utc(enclave.valid_until_s()).substr(0, 10),
+                     (enclave.valid_until_s() - now_s) / (24 * 3600),
+                     every           ? "all domains"
+                     : first == last ? fmt::format("domain {}", first)
+                                     : fmt::format("domains {}..{}", first, last),
+                     permissions.topics.publish.size(), permissions.topics.subscribe.size(), advice(enclave.files));
+}
+
 std::string describe(const security::Enclave& enclave) {
   const security::Permissions& permissions = enclave.permissions;
   return fmt::format("ok    {:<16} until {}  domains {}..{}  publishes {}  subscribes {}{}\n", enclave.name,
@@ -41,7 +55,7 @@ std::string describe(const security::Enclave& enclave) {
 
 /// Prints a line for each enclave: until when and for which domains and topics it is valid, or why it is unusable. True
 /// when all are usable. Throws security::SecurityError when there is no keystore.
-bool print_info(const std::string& folder, std::int64_t now_s, std::ostream& out) {
+bool print_info(const std::string& folder, bool verbose, std::int64_t now_s, std::ostream& out) {
   const security::KeystoreLayout layout{folder};
   std::error_code error;
   if (!fs::is_directory(layout.enclaves(), error))
@@ -52,7 +66,8 @@ bool print_info(const std::string& folder, std::int64_t now_s, std::ostream& out
   for (const std::string& name : enclaves_in(layout)) {
     try {
       const int first_domain = security::load_enclave(folder, name).permissions.domains.first;
-      out << describe(security::open_enclave(folder, name, first_domain, now_s));
+      const security::Enclave enclave = security::open_enclave(folder, name, first_domain, now_s);
+      out << (verbose ? describe(enclave) : summarize(enclave, now_s));
     } catch (const security::SecurityError& problem) {
       out << fmt::format("FAIL  {:<16} {}\n", name, problem.what());
       all_good = false;
@@ -232,7 +247,8 @@ void add_keystore_commands(CLI::App& app, KeystoreRequest& request) {
   renew->add_option("enclaves", request.enclaves, "Enclaves to renew (default: all)");
   add_topics(*renew, request);
   add_days(*renew, request);
-  add_action(app, request, Action::kInfo, "info", "Show permissions and dates of all enclaves, and the problems");
+  add_action(app, request, Action::kInfo, "info", "Show permissions and dates of all enclaves, and the problems")
+      ->add_flag("--verbose", request.verbose, "Also name the topics that each enclave may use");
   app.footer("Exit code: 0 done, 1 info found an unusable enclave, 2 not possible");
 }
 
@@ -242,7 +258,7 @@ int run_keystore(const KeystoreRequest& request, std::int64_t now_s, std::ostrea
     if (request.action == Action::kCreate) create(request, now_s, out);
     if (request.action == Action::kAdd) add(request, now_s, out);
     if (request.action == Action::kRenew) renew(request, now_s, out);
-    const bool good = request.action != Action::kInfo || print_info(folder_of(request), now_s, out);
+    const bool good = request.action != Action::kInfo || print_info(folder_of(request), request.verbose, now_s, out);
     return good ? service::kOk : service::kRunFailed;
   });
 }

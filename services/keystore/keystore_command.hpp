@@ -21,6 +21,7 @@ struct KeystoreRequest {
   std::vector<std::string> enclaves;  ///< to add or renew
   int days = 365;
   int domain = -1;                  ///< the only one; -1 = all
+  bool verbose = false;             ///< info: all topics by name
   bool encrypt_frames = false;      ///< also data that otherwise stays in shared memory
   std::vector<std::string> robots;  ///< that get enclaves of their own
   std::string like;                 ///< role whose topics a new enclave gets

@@ -3,10 +3,12 @@
 #include "services/slam/config.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "common/bus/topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -63,6 +65,11 @@ std::string missing_between(const std::string& base, const std::string& camera, 
   if (!knows_base) return fmt::format("no transform of '{}' (slam.base.frame)", base);
   if (!knows_camera) return fmt::format("no transform of '{}' (slam.camera_frame)", camera);
   return fmt::format("no chain of transforms from '{}' to '{}'", base, camera);
+}
+
+std::string frames_of(const geometry::TransformLog& log) {
+  const std::set<std::string> frames = log.frames();
+  return frames.empty() ? "" : fmt::format(" (of the frames {})", fmt::join(frames, ", "));
 }
 
 std::string to_text(const Eigen::Isometry3d& T) {
@@ -141,7 +148,7 @@ ServiceConfig with_mount(ServiceConfig config, service::Runtime& runtime) {
           "slam.base.camera=tf: {} on rt/tf_static after {:g} s. Does a robot_state_publisher run in this domain, and "
           "are the frames those of slam.base.frame and slam.camera_frame? Or give the mount as "
           "--camera-in-base x,y,z,qx,qy,qz,qw",
-          missing, config.base.tf_timeout_s));
+          missing + frames_of(log), config.base.tf_timeout_s));
     }
     runtime.heartbeat.tick();
     runtime.heartbeat.set_state(msg::ServiceState::kStarting, "waits for rt/tf_static: " + missing);

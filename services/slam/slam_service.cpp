@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kRealtimeQueue = 4, kEveryFrameQueue = 8;
 constexpr std::chrono::milliseconds kStatePeriod{50};
+constexpr std::uint64_t kFramesUntilSilent = 30;  // a driver may be found after the first frames
 constexpr std::int64_t kDiagnosticsPeriodNs = 1'000'000'000;
 
 /// Only in realtime do frames come at a rate that one can rely on; else the slowest stage of a busy host sets it.
@@ -351,6 +352,10 @@ void SlamService::report_state() {
     runtime_.heartbeat.set_state(ready ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
                                  ready ? "" : "waits for a filter and a listener to rtd/tracking");
     return;
+  }
+  if (motion_ && counters_.frames > kFramesUntilSilent && motion_log_.pass()) {
+    if (const std::string silent = motion_->trouble(); !silent.empty())
+      SPDLOG_WARN("event=motion_silent cause=\"{}\"", silent);
   }
   const std::string message = trouble();
   runtime_.heartbeat.set_state(message.empty() ? msg::ServiceState::kRunning : msg::ServiceState::kDegraded, message);

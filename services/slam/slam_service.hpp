@@ -84,7 +84,7 @@ class SlamService {
   bool input_gone_ = false;
   std::uint64_t dropped_logged_ = 0;
   service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},
-      dropped_log_{std::chrono::seconds(1)};
+      dropped_log_{std::chrono::seconds(1)}, motion_log_{std::chrono::seconds(30)};
   std::shared_ptr<const msg::FeatureFrame> last_frame_;
   std::optional<SlamCommands> commands_;  // last: it uses the others
 };

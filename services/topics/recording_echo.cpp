@@ -103,7 +103,7 @@ class RecordingPrinter {
         out_ << service::json_line(line) << '\n';
       } else {
         if (request_.topics.size() != 2) out_ << title_of(message, type);
-        out_ << message_text(json);
+        out_ << message_text(json, request_.verbose ? Detail::kAll : Detail::kReadable);
       }
       ++printed_;
     } catch (const ros::WireError& error) {

@@ -52,6 +52,7 @@ void add_topics_commands(CLI::App& app, TopicsRequest& request) {
   echo->add_option("topic", request.topics,
                    "Topic by ROS or DDS name; or a recording (MCAP, .db3, .bag) and topics in it (default: all)")
       ->required();
+  echo->add_flag("--verbose", request.verbose, "All digits, times as sec and nanosec, and arrays of one value in full");
   echo->add_flag("--once", request.once, "End after one message");
   echo->add_option("--count", request.count, "End after this many messages");
   echo->add_option("--duration", request.duration_s,

@@ -19,6 +19,7 @@ struct TopicsRequest {
   double wait_s = 6;                ///< list: longest search
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C or the end of the recording
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number
+  bool verbose = false;              ///< echo: every field as it is on the wire
   std::uint64_t max_array = 36;     ///< echo: values shown of an array, 0 = all
   bool once = false, json = false;
 };

@@ -40,7 +40,7 @@ class Printer {
                                           {"received_ns", sample.received_ns},    {"message", message}};
         out_ << service::json_line(line) << std::endl;
       } else {
-        out_ << message_text(message) << std::flush;
+        out_ << message_text(message, request_.verbose ? Detail::kAll : Detail::kReadable) << std::flush;
       }
       ++printed_;
     } catch (const ros::WireError& error) {

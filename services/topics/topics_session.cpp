@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <poll.h>
 
+#include <iostream>
 #include <set>
 
 #include "common/bus/host/port_check.hpp"
@@ -20,7 +21,11 @@ bool is_called(const bus::RawTopic& topic, const std::string& name) {
 }
 
 TopicsSession::TopicsSession(const service::ConfigSources& sources)
-    : options_(service::load_bus_options(sources, "rtd-topics")), bus_(bus::connect_raw(options_)) {}
+    : options_(service::load_bus_options(sources, "rtd-topics")), bus_(bus::connect_raw(options_)) {
+  for (const bus::EnvironmentSetting& setting : options_.environment) {
+    if (!setting.followed) std::cerr << "rtd topics: " << setting.text << '\n';
+  }
+}
 
 bool TopicsSession::continues(std::chrono::milliseconds moment) {
   pollfd descriptor{signals_.fd(), POLLIN, 0};

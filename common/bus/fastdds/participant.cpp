@@ -5,6 +5,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <mutex>
+#include <optional>
+#include <string>
 
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/log/Log.hpp>
@@ -42,6 +46,27 @@ void configure_library_once() {
   });
 }
 
+/// Fast DDS makes a participant that discovers by announcements one that asks the server of this variable, whatever
+/// its QoS say: what is not followed (common/service/dds_environment.hpp) must not come in here.
+class WithoutServerOfEnvironment {
+ public:
+  WithoutServerOfEnvironment() {
+    if (const char* value = std::getenv(kVariable)) {
+      value_ = value;
+      ::unsetenv(kVariable);
+    }
+  }
+  ~WithoutServerOfEnvironment() {
+    if (value_) ::setenv(kVariable, value_->c_str(), 1);  // processes that we start read it too
+  }
+  WithoutServerOfEnvironment(const WithoutServerOfEnvironment&) = delete;
+  WithoutServerOfEnvironment& operator=(const WithoutServerOfEnvironment&) = delete;
+
+ private:
+  static constexpr const char* kVariable = "ROS_DISCOVERY_SERVER";
+  std::optional<std::string> value_;
+};
+
 constexpr std::uint32_t kParticipantIds = 60;  // more do not fit into the port range of domain 232
 
 std::uint32_t next_participant_id(int domain) {
@@ -67,6 +92,7 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
   dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
   static std::mutex one_at_a_time;  // Fast DDS asks getpwuid(), which is not thread-safe
   const std::lock_guard lock(one_at_a_time);
+  const WithoutServerOfEnvironment announced;
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
     qos.wire_protocol().participant_id = static_cast<std::int32_t>(next_participant_id(options.domain));

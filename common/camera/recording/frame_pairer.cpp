@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/camera/depth_alignment.hpp"
 #include "common/camera/recording/ros_images.hpp"
 
 namespace rtd::camera {
@@ -86,6 +87,10 @@ std::optional<FramePairer::Pair> FramePairer::next(SkipLog& skips) {
   return std::nullopt;
 }
 
+std::string no_stamps(const std::string& topic, const std::string& instead) {
+  return fmt::format("the stamps on {} are all 0, the driver does not fill header.stamp: {} are used", topic, instead);
+}
+
 std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
                                        const std::optional<vision::DepthRegistration>& registration, SkipLog& skips) {
   ImageRead color = decode_color(pair.color.message);
@@ -99,6 +104,7 @@ std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double flo
     return std::nullopt;
   }
   if (registration && depth.image.size() == registration->depth_size()) depth.image = (*registration)(depth.image);
+  if (!registration) depth.image = scaled_to(color.image.size(), depth.image);
   const auto mismatch = size_mismatch(name_of(pair.color.message), color.image, depth.image, info.camera);
   if (mismatch) {
     skips.add(*mismatch);

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <optional>
+#include <string>
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/recording.hpp"
@@ -58,6 +59,9 @@ class FramePairer {
   std::int64_t newest_recorded_ns_ = 0;
   bool finished_ = false;
 };
+
+/// "the stamps on TOPIC are all 0 ...": a remark; `instead` is what takes their place.
+std::string no_stamps(const std::string& topic, const std::string& instead);
 
 /// The frame that a pair makes, depth in floats rounded to float_unit_m, then registered unless it is already; empty,
 /// and counted, when it cannot be decoded or its sizes do not fit.

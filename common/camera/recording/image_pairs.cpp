@@ -116,6 +116,9 @@ class ImagePairs final : public RecordingSource {
   std::optional<std::int64_t> advance() override;
   std::optional<SourceFrame> decode() override;
   void look_at_first_images(const RecordingOptions& options);
+  /// Whether the driver left all stamps of a topic at 0; then the times of recording take their place.
+  bool lacks_stamps(const std::string& topic);
+  std::int64_t stamp_of(const RecordedMessage& message) const;
   void load_calibration(const RecordingOptions& options);
   void load_recorded_camera();
   void take_floats_per_metre(double per_metre);
@@ -126,8 +129,9 @@ class ImagePairs final : public RecordingSource {
 
   ImageTopics topics_;
   ImageOrigin color_, depth_;
-  double float_step_;    ///< of depth in floats: what becomes a unit, in the unit of the floats
-  bool floats_ = false;  ///< depth is in floats
+  double float_step_;                  ///< of depth in floats: what becomes a unit, in the unit of the floats
+  bool floats_ = false;                ///< depth is in floats
+  bool by_time_of_recording_ = false;  ///< frames have it in place of their stamps
   std::optional<vision::DepthRegistration> registration_;
   FramePairer pairer_;
   geometry::TransformLog transforms_;
@@ -159,12 +163,17 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
 
 void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   const RecordedMessage color = first_of(*recording_, topics_.color), depth = first_of(*recording_, topics_.depth);
-  color_ = {
-      topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, decode_color(color).image.size(), {}};
-  depth_ = {topics_.depth,
-            ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id,
-            decode_depth(depth, float_step_).image.size(),
-            {}};
+  const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, float_step_);
+  color_ = {topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, color_image.image.size(), {}};
+  depth_ = {topics_.depth, ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id, depth_image.image.size(), {}};
+  for (const ImageRead* image : {&color_image, &depth_image}) {
+    if (!image->remark.empty()) info_.remarks.push_back(image->remark);
+  }
+  for (const std::string& topic : {topics_.color, topics_.depth}) {
+    if (by_time_of_recording_ || !lacks_stamps(topic)) continue;
+    by_time_of_recording_ = true;
+    info_.remarks.push_back(no_stamps(topic, "the times of recording"));
+  }
   const auto sdk_unit_m = sdk_depth_unit_m(*recording_, topics_.depth);
   info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_step_);
   floats_ = has_float_depth(depth);
@@ -178,6 +187,24 @@ void ImagePairs::take_floats_per_metre(double per_metre) {
   float_step_ = info_.depth_scale_m * per_metre;
   info_.notes.push_back(
       fmt::format("depth of {} is taken for 1/{:g} m, although ROS has metres in floats", topics_.depth, per_metre));
+}
+
+/// A simulation may well begin at 0: the second image decides.
+bool ImagePairs::lacks_stamps(const std::string& topic) {
+  std::size_t images = 0, unstamped = 0;
+  recording_->play({topic});
+  while (images < 2) {
+    const std::optional<RecordedMessage> message = recording_->next();
+    if (!message) break;
+    ++images;
+    if (msg::to_ns(ros::decode<msg::Header>(message->wire, message->bytes).stamp) == 0) ++unstamped;
+  }
+  return images == 2 && unstamped == 2;
+}
+
+std::int64_t ImagePairs::stamp_of(const RecordedMessage& message) const {
+  if (by_time_of_recording_) return message.recorded_ns;
+  return msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
 }
 
 /// The camera of a CameraInfo; empty when the recording has none.
@@ -223,12 +250,11 @@ void ImagePairs::align_depth() {
   } catch (const SourceError& error) {
     missing = std::string("the cameras must be known, but ") + error.what();
   }
-  const std::string cause = why_unregistered(color_, depth_);
-  if (cause.empty()) return;
-  if (!depth_.camera) throw unregistered(recording_->name(), cause, missing);
+  if (why_unregistered(color_, depth_).empty()) return;
+  if (!depth_.camera) throw unregistered(recording_->name(), color_, depth_, missing);
   const auto T_color_depth = recorded_extrinsics(*recording_, color_, depth_);
   if (!T_color_depth) {
-    throw unregistered(recording_->name(), cause,
+    throw unregistered(recording_->name(), color_, depth_,
                        "the transform between the two frames must be in tf_static or tf (RealSense SDK: .../tf/0)");
   }
   registration_.emplace(info_.camera, *depth_.camera, *T_color_depth, info_.depth_scale_m);
@@ -260,8 +286,7 @@ void ImagePairs::take(RecordedMessage message) {
     if (!is_color && message.topic != topics_.depth) {
       return transforms_.add(ros::decode<msg::TFMessage>(message.wire, message.bytes));
     }
-    const std::int64_t stamp_ns = msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
-    StampedMessage stamped{stamp_ns, std::move(message)};
+    StampedMessage stamped{stamp_of(message), std::move(message)};
     is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
   } catch (const ros::WireError& error) {
     skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});

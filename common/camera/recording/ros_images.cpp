@@ -131,16 +131,36 @@ ImageRead refuse(SkipReason reason, const RecordedMessage& message, const std::s
   return {{}, SkippedInput{reason, name_of(message) + ": " + cause}};
 }
 
+std::size_t row_bytes(const msg::Image& image, int type) {
+  return std::size_t{image.width} * static_cast<std::size_t>(CV_ELEM_SIZE(type));
+}
+
+bool fits_its_step(const msg::Image& image, int type) {
+  return image.step >= row_bytes(image, type) && image.step > 0 && image.data.size() / image.step >= image.height;
+}
+
+/// Several simulators and drivers leave the length of a row at 0.
+bool is_dense(const msg::Image& image, int type) {
+  return image.data.size() == row_bytes(image, type) * image.height;
+}
+
 /// The pixels where they lie in the message. Throws ros::WireError when the message holds fewer than it claims.
 cv::Mat view_of(msg::Image& image, int type) {
-  const std::size_t row_bytes = std::size_t{image.width} * static_cast<std::size_t>(CV_ELEM_SIZE(type));
-  if (image.width == 0 || image.height == 0 || image.step < row_bytes ||
-      image.data.size() / image.step < image.height) {
+  const bool by_step = fits_its_step(image, type);
+  if (image.width == 0 || image.height == 0 || (!by_step && !is_dense(image, type))) {
     throw ros::WireError(std::to_string(image.width) + " x " + std::to_string(image.height) + " px of " +
                          image.encoding + " in rows of " + std::to_string(image.step) + " bytes do not fit into " +
                          std::to_string(image.data.size()) + " bytes");
   }
-  return {static_cast<int>(image.height), static_cast<int>(image.width), type, image.data.data(), image.step};
+  const std::size_t step = by_step ? image.step : row_bytes(image, type);
+  return {static_cast<int>(image.height), static_cast<int>(image.width), type, image.data.data(), step};
+}
+
+std::string remark_on(const RecordedMessage& message, const msg::Image& image, int type) {
+  if (fits_its_step(image, type)) return {};
+  return message.topic + ": the field 'step' is " + std::to_string(image.step) + ", a row of " +
+         std::to_string(image.width) + " px of " + image.encoding + " has " + std::to_string(row_bytes(image, type)) +
+         " bytes; as the pixels are complete, rows are read one behind the other";
 }
 
 ImageRead raw_color(const RecordedMessage& message) {
@@ -154,7 +174,7 @@ ImageRead raw_color(const RecordedMessage& message) {
   if (const std::string defect = size_defect(*encoding, pixels.size()); !defect.empty()) {
     throw ros::WireError("an image of " + size_text(pixels.size()) + " px in " + image.encoding + ": " + defect);
   }
-  return {to_bgr(*encoding, pixels), {}};
+  return {to_bgr(*encoding, pixels), {}, remark_on(message, image, encoding->type)};
 }
 
 int depth_type(const RecordedMessage& message, const msg::Image& image) {
@@ -171,7 +191,8 @@ ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
   auto image = ros::decode<msg::Image>(message.wire, message.bytes);
   const int type = depth_type(message, image);
   const cv::Mat pixels = view_of(image, type);
-  ImageRead result{type == CV_32FC1 ? quantize_depth(pixels, float_unit_m) : pixels.clone(), {}};
+  ImageRead result{
+      type == CV_32FC1 ? quantize_depth(pixels, float_unit_m) : pixels.clone(), {}, remark_on(message, image, type)};
   drop_saturated(result.image);
   return result;
 }

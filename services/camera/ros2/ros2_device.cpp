@@ -28,6 +28,9 @@ std::optional<geometry::CameraModel> usable_camera(const msg::CameraInfo& info, 
 constexpr std::int64_t kInfoNs = 1'000'000'000;       // for a CameraInfo of depth that is published
 constexpr std::int64_t kAlignmentNs = 5'000'000'000;  // for what registers depth, once the images are there
 constexpr std::uint64_t kSteppedImages = 30;          // in a row with a stamp before that of the last frame
+constexpr std::uint64_t kRecalibratedImages = 30;     // in a row with another CameraInfo
+constexpr double kRecalibrated_px = 1;
+constexpr std::uint64_t kUnstamped = 3;  // one of two streams has two then, and no clock stands still
 
 }  // namespace
 
@@ -63,13 +66,37 @@ std::optional<DeviceImage> Ros2Device::take(RecordedMessage& message) {
 std::optional<DeviceImage> Ros2Device::take_image(RecordedMessage& message) {
   const bool is_color = message.topic == options_.topics.color;
   if (!is_color && message.topic != options_.topics.depth) return std::nullopt;
+  const std::optional<std::int64_t> stamp_ns = stamp_of(message);
+  if (!stamp_ns) return std::nullopt;
+  if (is_color) note_color(*stamp_ns);
+  return DeviceImage{is_color ? Stream::kColor : Stream::kDepth, *stamp_ns, std::move(message)};
+}
+
+/// A simulation may well begin at 0, and continues.
+std::optional<std::int64_t> Ros2Device::stamp_of(const RecordedMessage& message) {
+  if (by_arrival_) return message.recorded_ns;
   const std::int64_t stamp_ns = msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
-  if (is_color) note_color(stamp_ns);
-  return DeviceImage{is_color ? Stream::kColor : Stream::kDepth, stamp_ns, std::move(message)};
+  if (stamp_ns != 0 || opened_) {
+    unstamped_ = 0;
+    return stamp_ns;
+  }
+  by_arrival_ = ++unstamped_ >= kUnstamped;
+  if (!by_arrival_) return std::nullopt;
+  remarks_.push_back(no_stamps(message.topic, "the times of arrival"));
+  return message.recorded_ns;
 }
 
 /// A restarted driver or simulation gives stamps of the past, and no frame would ever follow.
 void Ros2Device::note_color(std::int64_t stamp_ns) {
+  if (recalibrated_ > 0 && ++recalibrated_ > kRecalibratedImages) {
+    throw DeviceError(
+        DeviceProblem::kChanged,
+        fmt::format("{} has changed (now {} x {} px, fx {:g}, it was {} x {} px, fx {:g}): the camera begins again "
+                    "with it",
+                    options_.topics.info, newest_info_->width, newest_info_->height, newest_info_->k[0],
+                    color_origin_.camera->parameters().width, color_origin_.camera->parameters().height,
+                    color_origin_.camera->parameters().fx));
+  }
   if (stamp_ns > newest_color_ns_) stepped_ = 0;
   if (stamp_ns < newest_color_ns_) ++stepped_;
   newest_color_ns_ = std::max(newest_color_ns_, stamp_ns);
@@ -80,9 +107,11 @@ void Ros2Device::note_color(std::int64_t stamp_ns) {
 }
 
 void Ros2Device::take_calibration(const msg::CameraInfo& info) {
-  if (color_origin_.camera) return;
+  newest_info_ = info;
+  if (opened_ && color_origin_.camera) return watch_calibration(info);
   const std::string topic = "topic " + options_.topics.info;
-  if (calibrated()) {  // by a file; to compare the two images their own intrinsics are needed all the same
+  if (!options_.calibration_file
+           .empty()) {  // by a file; to compare the two images their own intrinsics are needed all the same
     color_origin_.camera = usable_camera(info, options_.topics.color, topic);
     return check_after_opening();
   }
@@ -90,8 +119,17 @@ void Ros2Device::take_calibration(const msg::CameraInfo& info) {
   check_frame_size(info.width, info.height, topic);
 }
 
+/// Infos that change with each image belong to images of two kinds: the sizes of these decide.
+void Ros2Device::watch_calibration(const msg::CameraInfo& info) {
+  if (!options_.calibration_file.empty()) return;
+  const auto camera = usable_camera(info, options_.topics.color, "topic " + options_.topics.info);
+  const bool other = camera && difference_px(*camera, *color_origin_.camera) > kRecalibrated_px;
+  if (!other || recalibrated_ == 0) recalibrated_ = other ? 1 : 0;
+}
+
 void Ros2Device::take_depth_camera(const msg::CameraInfo& info) {
-  if (depth_origin_.camera) return;
+  newest_depth_info_ = info;
+  if (opened_ && depth_origin_.camera) return;
   depth_origin_.camera = usable_camera(info, options_.topics.depth, "topic " + options_.topics.depth_info);
   check_after_opening();
 }
@@ -100,7 +138,9 @@ void Ros2Device::take_depth_camera(const msg::CameraInfo& info) {
 void Ros2Device::check_after_opening() const {
   if (!opened_ || options_.registered || depth_camera_) return;
   const std::string cause = why_unregistered(color_origin_, depth_origin_);
-  if (!cause.empty()) throw unregistered(uri_, cause, "start the camera again, now that it is known");
+  if (cause.empty()) return;
+  throw DeviceError(DeviceProblem::kChanged,
+                    fmt::format("the camera of depth is known now: {}. The camera begins again to register it", cause));
 }
 
 void Ros2Device::take_transforms(const RecordedMessage& message) {
@@ -118,14 +158,38 @@ std::optional<Eigen::Isometry3d> Ros2Device::extrinsics() const {
 
 std::optional<DeviceSetup> Ros2Device::setup_by(const FramePairer::Pair& first, const SourceInfo& known) {
   if (!calibrated()) return std::nullopt;
-  check_first(first, known);
-  if (!align_depth()) return std::nullopt;
-  return DeviceSetup{
-      {.stream = Stream::kColor}, {.stream = Stream::kDepth}, unit_m_, color_origin_.camera, depth_camera_};
+  if (!check_first(first, known) || !align_depth()) return std::nullopt;
+  opened_ = begun_again_;
+  DeviceSetup setup;
+  setup.color.stream = Stream::kColor;
+  setup.depth.stream = Stream::kDepth;
+  setup.depth_scale_m = unit_m_;
+  setup.camera = color_origin_.camera;
+  setup.depth_camera = depth_camera_;
+  setup.remarks = remarks_;
+  setup.stamped_by_arrival = by_arrival_;
+  return setup;
+}
+
+void Ros2Device::begin_again() {
+  begun_again_ = true;
+  opened_ = by_arrival_ = false;
+  color_origin_ = depth_origin_ = {};
+  depth_camera_.reset();
+  first_lack_ns_.reset();
+  first_misfit_ns_.reset();
+  unregistered_.clear();
+  lacking_.clear();
+  remarks_.clear();
+  recalibrated_ = unstamped_ = stepped_ = 0;
+  newest_color_ns_ = std::numeric_limits<std::int64_t>::min();
+  if (newest_info_) take_calibration(msg::CameraInfo(*newest_info_));  // a latched one does not come again
+  if (newest_depth_info_) take_depth_camera(msg::CameraInfo(*newest_depth_info_));
 }
 
 /// What would make every frame unusable is an error, not a skipped frame.
-void Ros2Device::check_first(const FramePairer::Pair& pair, const SourceInfo& known) {
+bool Ros2Device::check_first(const FramePairer::Pair& pair, const SourceInfo& known) {
+  lacking_.clear();
   try {
     const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
     unit_m_ = depth_unit_m(depth, kFloatDepthUnitM);
@@ -137,14 +201,27 @@ void Ros2Device::check_first(const FramePairer::Pair& pair, const SourceInfo& kn
     depth_origin_.frame_id = ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id;
     color_origin_.size_px = color_image.image.size();
     depth_origin_.size_px = depth_image.image.size();
-    if (color_image.problem || depth_image.problem) return;
-    const cv::Mat& fitting = options_.registered ? depth_image.image : color_image.image;
+    if (color_image.problem || depth_image.problem) return true;
+    for (const ImageRead* image : {&color_image, &depth_image}) {
+      if (!image->remark.empty() && std::ranges::count(remarks_, image->remark) == 0) remarks_.push_back(image->remark);
+    }
+    const cv::Mat fitting =
+        options_.registered ? scaled_to(color_origin_.size_px, depth_image.image) : color_image.image;
     const auto& camera = options_.calibration_file.empty() ? *color_origin_.camera : known.camera;
     const auto mismatch = size_mismatch(options_.topics.color, color_image.image, fitting, camera);
-    if (mismatch) throw SourceError(mismatch->detail);
+    if (mismatch) return may_still_fit(mismatch->detail);
   } catch (const ros::WireError&) {
     // decode() reports it
   }
+  return true;
+}
+
+/// A driver that was just restarted may publish its images before its CameraInfo.
+bool Ros2Device::may_still_fit(const std::string& mismatch) {
+  if (!first_misfit_ns_) first_misfit_ns_ = feed_->now_ns();
+  if (feed_->now_ns() - *first_misfit_ns_ > kInfoNs) throw SourceError(mismatch);
+  lacking_ = "sensor_msgs/CameraInfo that fits the images: " + mismatch;
+  return false;
 }
 
 bool Ros2Device::align_depth() {
@@ -171,7 +248,7 @@ bool Ros2Device::align_depth() {
 
 std::string Ros2Device::lack() const {
   if (unregistered_.empty()) return "no " + lacking_;
-  return unregistered(options_.topics.depth, unregistered_, "there must be " + lacking_).what();
+  return unregistered(options_.topics.depth, color_origin_, depth_origin_, "there must be " + lacking_).what();
 }
 
 /// CameraInfos come with the images and lasting transforms at once: what is not there soon is not there.
@@ -189,7 +266,10 @@ void Ros2Device::drop_waiting() {
 }
 
 ImageRead Ros2Device::decode(const DeviceMode& mode, const RecordedMessage& message) const {
-  return mode.stream == Stream::kColor ? decode_color(message) : decode_depth(message, float_step_);
+  if (mode.stream == Stream::kColor) return decode_color(message);
+  ImageRead depth = decode_depth(message, float_step_);
+  if (options_.registered) depth.image = scaled_to(color_origin_.size_px, depth.image);
+  return depth;
 }
 
 std::vector<SkippedInput> Ros2Device::take_skipped() {
@@ -208,6 +288,7 @@ std::string Ros2Device::why_no_frame(const Arrivals& color, const Arrivals& dept
   if (color.silent) return no("colour image", options_.topics.color);
   if (depth.silent) return no("depth image", options_.topics.depth);
   if (!calibrated()) return no("sensor_msgs/CameraInfo", options_.topics.info);
+  if (std::abs(color.stamp_ns - depth.stamp_ns) <= options_.tolerance_ns) return "colour and depth come, no frame yet";
   return fmt::format(
       "no pair of colour and depth: the newest stamps on {} and {} are {:.1f} ms apart, allowed are {:g} "
       "(?tolerance_ms=)",

@@ -51,8 +51,10 @@ class Ros2Device final : public LiveDevice {
   std::optional<DeviceSetup> start(const ModeRequest&) override { return std::nullopt; }
   /// Throws SourceError for encodings and sizes that cannot be used.
   std::optional<DeviceSetup> setup_by(const FramePairer::Pair& first, const SourceInfo& known) override;
-  /// Throws SourceError: calibration, stamps that went back, depth that must be registered and cannot be.
+  /// Throws SourceError: calibration, stamps that went back, depth that must be registered and cannot be; DeviceError,
+  /// kChanged: a CameraInfo that is another than before.
   std::optional<DeviceImage> read(std::chrono::milliseconds timeout) override;
+  void begin_again() override;
   void drop_waiting() override;
   ImageRead decode(const DeviceMode& mode, const RecordedMessage& message) const override;
   std::vector<SkippedInput> take_skipped() override;
@@ -67,8 +69,13 @@ class Ros2Device final : public LiveDevice {
   void take_depth_camera(const msg::CameraInfo& info);
   void take_transforms(const RecordedMessage& message);
   void note_color(std::int64_t stamp_ns);
+  /// Empty while the stamps of the driver are 0 and it is not clear that they stay so.
+  std::optional<std::int64_t> stamp_of(const RecordedMessage& message);
+  void watch_calibration(const msg::CameraInfo& info);
   std::optional<Eigen::Isometry3d> extrinsics() const;
-  void check_first(const FramePairer::Pair& pair, const SourceInfo& known);
+  /// Takes over what the first images are; false while the CameraInfo is that of another size.
+  bool check_first(const FramePairer::Pair& pair, const SourceInfo& known);
+  bool may_still_fit(const std::string& mismatch);
   /// Sees to it that depth is registered to colour; false while something is missing (lacking_).
   bool align_depth();
   std::string lack() const;
@@ -78,14 +85,21 @@ class Ros2Device final : public LiveDevice {
   const std::string uri_;
   const std::unique_ptr<LiveFeed> feed_;
   const LiveOptions options_;
-  bool opened_ = false;  ///< frames are given out from now on
+  bool opened_ = false;       ///< frames are given out from now on
+  bool begun_again_ = false;  ///< drop_waiting() is not called a second time
   ImageOrigin color_origin_, depth_origin_;
   double unit_m_ = 0;                     ///< of depth
   double float_step_ = kFloatDepthUnitM;  ///< of depth in floats: what becomes a unit, in the unit of the floats
   std::string unregistered_, lacking_;    ///< why depth must be registered, and what that lacks
   geometry::TransformLog lasting_transforms_, transforms_;
-  std::optional<DepthCamera> depth_camera_;    ///< when depth is to be registered
-  std::optional<std::int64_t> first_lack_ns_;  ///< when a pair came that could not be aligned
+  std::optional<DepthCamera> depth_camera_;      ///< when depth is to be registered
+  std::optional<std::int64_t> first_lack_ns_;    ///< when a pair came that could not be aligned
+  std::optional<std::int64_t> first_misfit_ns_;  ///< when a pair came that the CameraInfo does not fit
+  std::optional<msg::CameraInfo> newest_info_, newest_depth_info_;
+  std::uint64_t recalibrated_ = 0;  ///< colour images in a row since CameraInfo is another
+  std::uint64_t unstamped_ = 0;     ///< images so far, if all have the stamp 0
+  bool by_arrival_ = false;         ///< images have the time of their arrival in place of a stamp
+  std::vector<std::string> remarks_;
   std::int64_t newest_color_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t stepped_ = 0;  ///< colour images in a row that are older
   std::uint64_t dropped_ = 0;

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/demo/demo_command.hpp"
 
+#include <unistd.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <regex>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -84,13 +87,24 @@ int compare(const std::string& out_dir, const std::string& page) {
        "--label", "static points (--filter rtd)", "--page", page});
 }
 
-void print_next_steps(const std::string& page, const std::string& detector) {
-  std::cout << "\n  detector weights: " << detector << "\n  both trajectories: " << page << "\n\n  next:\n"
-            << "    rtd run --source tum:FOLDER --out DIR                     your own TUM RGB-D sequence\n"
-            << "    rtd run --source bag:FILE --out DIR                       a ROS 1 bag\n"
-            << "    rtd run --source 'synthetic:office?frames=0' --out DIR    no data at all, endless: Ctrl-C\n"
-            << "    rtd demo --dataset fr3_walking_xyz                        a real sequence with people (download)\n"
-            << "    rtd eval DIR/trajectory.txt GROUNDTRUTH                   evaluate any trajectory\n";
+/// "rtd" where the shell finds it, else with its folder.
+std::string command_of_rtd() {
+  std::istringstream folders(environment("PATH"));
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (::access((fs::path(folder) / "rtd").c_str(), X_OK) == 0) return "rtd";
+  const std::string executable = process::find_executable("rtd");
+  return executable.empty() ? "rtd" : fs::proximate(executable).string();
+}
+
+/// Each can be copied as it is; the page is named last.
+void print_next_steps(const std::string& out_dir, const std::string& page, const std::string& detector) {
+  const std::string rtd = command_of_rtd(), run = (fs::path(out_dir) / "rtd").string();
+  std::cout << "\n  detector weights: " << detector << "\n\n  next:\n"
+            << "    " << rtd << " run --source 'synthetic:office?frames=0' --out /tmp/office    endless: Ctrl-C\n"
+            << "    " << rtd << " eval " << run << "/trajectory.txt " << run << "/groundtruth.txt\n"
+            << "    " << rtd << " demo --dataset fr3_walking_xyz    a real sequence with people (download)\n"
+            << "    " << rtd << " run --help    your own data: folders, bags, recordings, cameras\n"
+            << "\n  both trajectories: " << fs::absolute(page).lexically_normal().string() << std::endl;
 }
 
 int run_both(const DemoOptions& options, const std::string& source) {
@@ -104,7 +118,7 @@ int run_both(const DemoOptions& options, const std::string& source) {
 
   const std::string page = (fs::path(options.out_dir) / "demo.html").string();
   if (compare(options.out_dir, page) != 0) return service::kRunFailed;
-  print_next_steps(page, with.detector);
+  print_next_steps(options.out_dir, page, with.detector);
   return with.code;
 }
 

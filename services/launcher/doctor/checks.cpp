@@ -132,6 +132,8 @@ void check_network(const bus::BusOptions& options, Findings& findings) {
   findings.push_back(interfaces(network));
   for (const std::string& peer : network.peers) findings.push_back(named_host(peer, "--peers"));
   if (!network.discovery_server.empty()) findings.push_back(named_host(network.discovery_server, "--discovery-server"));
+  for (const bus::EnvironmentSetting& setting : options.environment)
+    findings.push_back({setting.followed ? Verdict::kOk : Verdict::kWarn, "network: " + setting.text});
   contradictions(options, findings);
   ports(options, findings);
 }

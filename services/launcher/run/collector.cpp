@@ -131,6 +131,11 @@ std::optional<std::string> Collector::take_notice() {
   return builder_.take_notice();
 }
 
+std::vector<std::string> Collector::repeated_notices() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.repeated_notices();
+}
+
 bool Collector::tracked_any() const {
   const std::lock_guard lock(mutex_);
   return builder_.tracked_any();

@@ -37,6 +37,7 @@ class Collector {
   std::string active_services(const Tolerated& tolerated = {}) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
+  std::vector<std::string> repeated_notices() const;
   bool tracked_any() const;
   bool any_frame() const;  ///< the camera has given one
   std::string camera_message() const;

@@ -50,6 +50,9 @@ Terminal open_terminal(bool quiet) {
 
 void print_setup(const RunSetup& setup, Terminal& terminal) {
   if (!setup.weights_advice.empty()) terminal.warn("rtd: geometry only: " + setup.weights_advice);
+  for (const bus::EnvironmentSetting& setting : setup.bus_options.environment) {
+    setting.followed ? terminal.print("rtd: " + setting.text) : terminal.warn("rtd: " + setting.text);
+  }
   terminal.print(fmt::format("source {}{}, pace {}, filter {}, detector {}, {} domain {}", setup.source,
                              setup.total_frames > 0 ? fmt::format(" ({} frames)", setup.total_frames) : "", setup.pace,
                              setup.services.filter_mode,

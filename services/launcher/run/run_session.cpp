@@ -212,6 +212,7 @@ run_record::RunRecord RunSession::record() const {
   record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
   collector_.fill(record);
   record.events = events_;
+  for (std::string& notice : collector_.repeated_notices()) record.events.push_back(std::move(notice));
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();

@@ -7,27 +7,18 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
-#include "common/camera/depth_figures.hpp"
-#include "common/camera/device_uri.hpp"
-#include "common/camera/frame_source.hpp"
-#include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
-#include "common/camera/source_schemes.hpp"
-#include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
-#include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/pacer.hpp"
-#include "services/launcher/doctor/doctor_command.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -46,17 +37,6 @@ void check_sections(const std::vector<std::string>& overrides) {
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
-}
-
-/// A camera, a scene without an end, and a detector that serves at its own pace do not wait. Of what is stored every
-/// frame is played, with the same result each time.
-const char* usual_pace(const RunSetup& setup) {
-  if (setup.detector == "remote") return "realtime";
-  if (camera::is_device(setup.source)) return camera::parse_device_uri(setup.source).recorded ? "lockstep" : "realtime";
-  if (camera::is_live(setup.source)) return "realtime";
-  if (!camera::is_of_kind(setup.source, camera::SourceKind::kScene) || setup.frames > 0) return "lockstep";
-  const camera::SyntheticOptions scene = camera::parse_synthetic_options(camera::parse_source_uri(setup.source));
-  return scene.frames == 0 ? "realtime" : "lockstep";
 }
 
 void choose_pace(RunSetup& setup) {
@@ -100,44 +80,6 @@ void choose_vendors(RunSetup& setup) {
     }
     setup.vendors_of[name] = vendor;
   }
-}
-
-/// No one plugs a camera in because a run waits for it. Cameras of the network may still announce themselves.
-void require_local_camera(const std::string& source) {
-  if (!camera::is_device(source)) return;
-  const camera::DeviceUri uri = camera::parse_device_uri(source);
-  if (uri.scheme != "openni2" || uri.recorded) return;
-  const std::string why = why_no_camera(uri.device, camera::find_openni2_cameras());
-  if (!why.empty()) throw ConfigError(why);
-}
-
-std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
-  if (limit == 0) return frames;
-  return frames == 0 ? limit : std::min(frames, limit);
-}
-
-/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
-std::string doubt_about_depth(camera::FrameSource& source) {
-  const std::optional<camera::SourceFrame> first = source.next();
-  if (!first) return {};
-  camera::DepthFigures figures;
-  figures.add(first->image.depth, first->image.depth_scale_m);
-  return figures.doubt(source.info().depth_unit_given);
-}
-
-/// How many frames come, and what the source was taken for.
-void look_at_source(RunSetup& setup) {
-  if (camera::is_live(setup.source)) {
-    camera::check_live_uri(setup.source);
-    require_local_camera(setup.source);
-    setup.total_frames = setup.frames;
-    return;
-  }
-  const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
-  setup.total_frames = limited(source->info().frames, setup.frames);
-  setup.source_notes = source->info().notes;
-  setup.source_remarks = source->info().remarks;
-  if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);
 }
 
 /// The paper's network for the paper's mode, where it is there; else empty: the usual one.
@@ -264,6 +206,8 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
                                         "--wait-for",        fmt::format("{}", fmt::join(wait_for, ",")),
                                         "--groundtruth-out", setup.groundtruth_path()};
   if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
+  if (!setup.beside.empty())
+    arguments.insert(arguments.end(), {"--beside", fmt::format("{}", fmt::join(setup.beside, ","))});
   return arguments;
 }
 

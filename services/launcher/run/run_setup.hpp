@@ -126,11 +126,20 @@ struct RunSetup : RunOptions {
   std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
   bool save_map_asked = false;  ///< the user named the file
   ReplaySetup replay;
+  std::vector<std::string> beside;  ///< ROS names of topics of a recorded source that slam needs, for --beside
 
   /// Where the services write their parts of --trace.
   std::string trace_folder() const { return out_dir + "/trace"; }
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
 };
+
+/// The pace without --pace. A camera, a scene without an end, and a detector that serves at its own pace do not wait.
+/// Of what is stored every frame is played, with the same result each time.
+const char* usual_pace(const RunSetup& setup);
+
+/// How many frames come, what the source was taken for, what is wrong with it, and which of its topics slam needs.
+/// Throws service::ConfigError or camera::SourceError.
+void look_at_source(RunSetup& setup);
 
 /// Checks everything that can be checked before a process is started: source, configuration, weights, output folder (it
 /// is created). Throws service::ConfigError or camera::SourceError.

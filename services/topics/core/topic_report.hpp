@@ -54,4 +54,10 @@ nlohmann::ordered_json rate_json(const std::vector<TopicRow>& rows, double secon
 /// the end.
 std::string message_text(const nlohmann::ordered_json& message);
 
+enum class Detail {
+  kReadable,  ///< for people: times as dates, six digits behind the point, "[36 x 0]" for an array of one value
+  kAll,
+};
+std::string message_text(const nlohmann::ordered_json& message, Detail detail);
+
 }  // namespace rtd::topics

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // rtd-camera with a ROS 2 camera driver: writers of other participants with the QoS and messages that drivers have.
+#include <gmock/gmock.h>
+
 #include <atomic>
+#include <cstdlib>
+#include <filesystem>
 #include <thread>
 
 #include "common/bus/raw_bus.hpp"
 #include "common/ros_codec/wire.hpp"
+#include "common/service/config.hpp"
 #include "tests/component/camera/camera_on_bus.hpp"
 
 namespace rtd::camera {
@@ -176,6 +181,46 @@ TEST_P(Ros2Camera, gives_up_in_time_and_stops_while_it_waits) {
   stop_.request_stop();
   EXPECT_EQ(running.get(), service::kOk);
 }
+
+/// A recording with an IMU and tf, as robots make it.
+class RecordedRobot : public test::CameraOnBus {
+ protected:
+  RecordedRobot() : CameraOnBus("mcap:" + file()) {}
+  static std::string file() {
+    const char* const data = std::getenv("RTD_DATA_DIR");
+    return std::string(data == nullptr ? "" : data) + "/field/recording_with_imu_and_tf/imu_tf.mcap";
+  }
+};
+
+TEST_P(RecordedRobot, brings_its_imu_and_its_transforms) {
+  if (!std::filesystem::exists(file())) GTEST_SKIP() << "no " << file();
+  config_.beside = {"/camera/imu", "/tf_static"};
+  std::atomic<int> samples{0};
+  const auto raw = bus::connect_raw(options_);
+  bus::RawHandlers handlers;
+  handlers.on_sample = [&samples](const bus::RawSample&) { ++samples; };
+  const auto imu =
+      raw->reader({"rt/camera/imu", "sensor_msgs::msg::dds_::Imu_"}, {.transient_local = true}, std::move(handlers));
+  test_support::Inbox<msg::TFMessage> transforms;
+  const auto tf = bus_->reader<msg::TFMessage>(bus::topics::kTfStatic, [&](auto message) { transforms.take(message); });
+  auto running = start();
+  EXPECT_TRUE(transforms.wait_count(1));
+  EXPECT_EQ(transforms.at(0)->transforms.size(), 2U) << "base_link, camera_link, optical frame";
+  EXPECT_EQ(running.get(), service::kOk);
+  EXPECT_GE(samples, 30) << "of 60, the last ones after the last frame";
+}
+
+TEST_P(RecordedRobot, refuses_a_topic_that_it_does_not_have_with_those_it_has) {
+  if (!std::filesystem::exists(file())) GTEST_SKIP() << "no " << file();
+  config_.beside = {"/other"};
+  EXPECT_THAT([this] { run(); }, ::testing::ThrowsMessage<service::ConfigError>(
+                                     ::testing::AllOf(HasSubstr("/other"), HasSubstr("/camera/imu"))));
+}
+
+INSTANTIATE_TEST_SUITE_P(EachVendor, RecordedRobot, ::testing::ValuesIn(test::networked_vendors()),
+                         [](const auto& vendor) { return vendor.param; });
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RecordedRobot);
 
 INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(test::networked_vendors()),
                          [](const auto& vendor) { return vendor.param; });

@@ -67,6 +67,17 @@ class Port {
   int socket_;
 };
 
+TEST_F(DoctorTest, names_the_dds_settings_of_ros_that_it_follows_and_those_that_it_does_not) {
+  ::setenv("ROS_STATIC_PEERS", "192.0.2.1", 1);
+  doctor({"--dds", "fastdds"});
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("warn network: ROS_STATIC_PEERS=192.0.2.1: is not followed"),
+                                   HasSubstr("--profile lan")));
+  ::setenv("ROS_STATIC_PEERS", "127.0.0.1", 1);
+  doctor({"--dds", "fastdds"});
+  EXPECT_THAT(rtd_.output(), HasSubstr("ok   network: ROS_STATIC_PEERS=127.0.0.1: followed"));
+  ::unsetenv("ROS_STATIC_PEERS");
+}
+
 TEST_F(DoctorTest, a_host_that_lacks_nothing_is_exit_code_0) {
   EXPECT_EQ(doctor({}), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("ok   services"), HasSubstr("ok   network: this host only"),

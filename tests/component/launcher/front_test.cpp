@@ -154,6 +154,26 @@ TEST_F(FrontTest, a_remote_detector_needs_a_network) {
   EXPECT_THAT(rtd_.output(), HasSubstr("--profile lan"));
 }
 
+TEST_F(FrontTest, an_unknown_option_is_named_before_one_that_is_missing) {
+  EXPECT_EQ(rtd_.run({"run", "--sorce", "synthetic:office", "--out", scratch_ / "out"}), 2);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--sorce"), HasSubstr("did you mean --source")));
+}
+
+TEST_F(FrontTest, config_lists_settings_of_the_services_that_are_installed) {
+  std::ofstream(scratch_ / "rtd-slam") << "#!/bin/sh\necho 'slam:'\necho '  imu:'\necho '    topic: /imu  # (--imu)'\n";
+  fs::permissions(scratch_ / "rtd-slam", fs::perms::owner_all);
+  EXPECT_EQ(rtd_.run({"config"}), 0);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("slam.imu.topic"), HasSubstr("/imu"), HasSubstr("--set KEY=VALUE")));
+}
+
+TEST_F(FrontTest, motion_topics_that_a_recording_does_not_have_are_refused_with_those_it_has) {
+  const char* const data = std::getenv("RTD_DATA_DIR");
+  const std::string file = std::string(data == nullptr ? "" : data) + "/field/recording_with_imu_and_tf/imu_tf.mcap";
+  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
+  EXPECT_EQ(rtd_.run({"run", "--source", "mcap:" + file, "--imu", "/other", "--out", scratch_ / "out"}), 2);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--imu /other"), HasSubstr("/camera/imu (sensor_msgs/Imu")));
+}
+
 TEST_F(FrontTest, an_unknown_profile_is_refused_with_those_there_are) {
   EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--profile", "lna"}), 2);
   EXPECT_THAT(rtd_.output(), HasSubstr("lan, localhost, secure, wifi"));

@@ -63,7 +63,14 @@ class RtdCommand {
  private:
   std::string executable_, command_, output_;
   process::ProcessId process_ = 0;
-  process::PosixProcessHost host_{[this](const std::string&, const std::string& line) { output_ += line + '\n'; }};
+  /// A line that is continued below the one before is put behind it.
+  void add(const std::string& line) {
+    constexpr const char* kContinued = "      ";
+    const bool continues = line.starts_with(kContinued) && output_.ends_with('\n');
+    if (continues) output_.back() = ' ';
+    output_ += (continues ? line.substr(line.find_first_not_of(' ')) : line) + '\n';
+  }
+  process::PosixProcessHost host_{[this](const std::string&, const std::string& line) { add(line); }};
 };
 
 /// A folder of its own for each test, removed at the end.

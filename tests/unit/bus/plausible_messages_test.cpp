@@ -178,6 +178,11 @@ TEST(PlausibleMessages, offsets_and_sizes_beyond_the_data_are_refused) {
   EXPECT_EQ(cloud([](auto& c) { c.height = 3; }), "sensor_msgs/PointCloud2.data");
   const auto image = [](auto change) { return broken<msg::Image>(change); };
   EXPECT_EQ(image([](auto& i) { i.step = 3; }), "sensor_msgs/Image.step");
+  const auto dense = [](auto& i) {
+    i.step = 0;
+    i.data.resize(8);
+  };
+  EXPECT_EQ(image(dense), "") << "4 x 2 px without bytes between rows: the step is not needed";
   EXPECT_EQ(image([](auto& i) { i.height = 3; }), "sensor_msgs/Image.data");
   EXPECT_EQ(broken<msg::OccupancyGrid>([](auto& g) { g.info.width = 2; }), "nav_msgs/OccupancyGrid.data");
   EXPECT_EQ(broken<msg::MapKeyframe>([](auto& k) { k.points_m.pop_back(); }), "rtd_msgs/MapKeyframe.points_m");

@@ -140,6 +140,39 @@ TEST(McapSource, wants_depth_registered_to_colour) {
   EXPECT_THAT(play_all(named + "&registered=1").frames, SizeIs(1));
 }
 
+TEST(McapSource, plays_dense_images_whose_step_is_0_and_remarks_it_once) {
+  McapFile file;
+  file.add(ImageBag::kInfo, "sensor_msgs/msg/CameraInfo", ImageBag::camera_info(), 0.9);
+  for (const double stamp_s : {1.0, 1.1}) {
+    msg::Image color = ImageBag::image(ImageBag::color(), "bgr8", stamp_s);
+    color.step = 0;
+    file.add(ImageBag::kColor, "sensor_msgs/msg/Image", color, stamp_s);
+    file.add(ImageBag::kDepth, "sensor_msgs/msg/Image", ImageBag::image(ImageBag::depth(), "16UC1", stamp_s), stamp_s);
+  }
+  const auto source = make_source(file.uri());
+  EXPECT_EQ(source->info().remarks.size(), 1U);
+  EXPECT_THAT(source->info().remarks.front(), HasSubstr("'step' is 0"));
+  int frames = 0;
+  while (source->next()) ++frames;
+  EXPECT_EQ(frames, 2);
+}
+
+TEST(McapSource, images_without_stamps_go_by_the_time_of_recording) {
+  McapFile file;
+  file.add(ImageBag::kInfo, "sensor_msgs/msg/CameraInfo", ImageBag::camera_info(), 0.9);
+  for (const double recorded_s : {1.0, 1.1, 1.2}) {
+    file.add(ImageBag::kColor, "sensor_msgs/msg/Image", ImageBag::image(ImageBag::color(), "bgr8", 0), recorded_s);
+    file.add(ImageBag::kDepth, "sensor_msgs/msg/Image", ImageBag::image(ImageBag::depth(), "16UC1", 0),
+             recorded_s + 0.005);
+  }
+  const auto source = make_source(file.uri());
+  EXPECT_THAT(source->info().remarks, testing::ElementsAre(HasSubstr("are all 0")));
+  EXPECT_EQ(source->next()->image.stamp_ns, 1'000'000'000);
+  EXPECT_EQ(source->next()->image.stamp_ns, 1'100'000'000);
+  EXPECT_EQ(source->next()->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(source->counters().skipped_total(), 0U);
+}
+
 TEST(McapSource, plays_frames_of_our_own_first) {
   McapFile file;
   file.add("/camera/color/image_raw/compressed", kCompressed, msg::CompressedImage{}, 1);

@@ -359,14 +359,15 @@ TEST_F(UnregisteredDepth, of_one_size_in_another_frame_is_taken_as_it_is_only_on
   EXPECT_EQ(only_frame(taken).image.depth.at<std::uint16_t>(3, 3), 1500);
 }
 
-TEST_F(UnregisteredDepth, whose_camera_is_known_late_ends_the_source) {
+TEST_F(UnregisteredDepth, whose_camera_is_known_late_begins_again) {
   begin();
   both(1.1);
   add("/di", "sensor_msgs/CameraInfo", ImageBag::camera_info(40));
   both(1.2);
   DeviceSource played = source(kTopics);
   only_frame(played);
-  EXPECT_THAT([&] { played.next(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("fx 40"), HasSubstr("again"))));
+  EXPECT_EQ(played.next()->image.stamp_ns, 1'200'000'000) << "in one frame: registered by the two lenses";
+  EXPECT_THAT(reported_.front(), AllOf(HasSubstr("fx 40"), HasSubstr("again")));
 }
 
 TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
@@ -377,6 +378,142 @@ TEST_F(UnregisteredDepth, waits_for_a_camera_info_that_is_published) {
   both(1.2);
   DeviceSource played = source(kTopics);
   EXPECT_EQ(only_frame(played).image.stamp_ns, 1'200'000'000);
+}
+
+TEST_F(Ros2DeviceTest, dense_rows_with_a_wrong_step_are_used_and_remarked_once) {
+  info();
+  for (const double stamp_s : {1.0, 1.1}) {
+    msg::Image color = ImageBag::image(ImageBag::color(), "bgr8", stamp_s);
+    color.step = 0;
+    add("/c", "sensor_msgs/Image", color);
+    depth(stamp_s);
+  }
+  DeviceSource played = source();
+  EXPECT_EQ(only_frame(played).image.color_bgr.at<cv::Vec3b>(5, 5), cv::Vec3b(100, 101, 102));
+  EXPECT_THAT(played.info().remarks, ElementsAre(AllOf(HasSubstr("/c"), HasSubstr("'step' is 0"))));
+}
+
+TEST_F(Ros2DeviceTest, images_without_stamps_go_by_their_arrival) {
+  info();
+  for (int i = 0; i < 6; ++i) both(0);
+  DeviceSource played = source();
+  const SourceFrame first = only_frame(played), second = played.next().value();
+  EXPECT_THAT(played.info().remarks, ElementsAre(AllOf(HasSubstr("/c are all 0"), HasSubstr("header.stamp"))));
+  EXPECT_GT(first.image.stamp_ns, 0);
+  EXPECT_EQ(second.image.stamp_ns - first.image.stamp_ns, 2'000'000) << "an image each ms";
+}
+
+TEST_F(Ros2DeviceTest, a_simulation_may_begin_at_0) {
+  info();
+  for (int i = 0; i < 4; ++i) both(0.1 * i);
+  DeviceSource played = source();
+  EXPECT_EQ(only_frame(played).image.stamp_ns, 200'000'000);
+  EXPECT_TRUE(played.info().remarks.empty());
+}
+
+TEST_F(Ros2DeviceTest, names_what_makes_every_image_unusable) {
+  begin();
+  both(1.1);
+  for (int i = 0; i < 2000; ++i) {
+    color(1.2 + 0.033 * i);
+    depth(1.2 + 0.033 * i);
+    script_.messages.back().bytes.resize(60);
+  }
+  DeviceSource played = source();
+  only_frame(played);
+  EXPECT_EQ(played.next(), std::nullopt);
+  ASSERT_FALSE(reported_.empty());
+  EXPECT_THAT(reported_.front(), AllOf(HasSubstr("no image can be used"), HasSubstr("/d"), HasSubstr("bytes")));
+}
+
+class ChangedCamera : public Ros2DeviceTest {
+ protected:
+  static constexpr int kWidth = 16, kHeight = 12;
+  static msg::CameraInfo small_info() {
+    msg::CameraInfo info = ImageBag::camera_info(15);
+    info.width = kWidth;
+    info.height = kHeight;
+    return info;
+  }
+  void small(double stamp_s) {
+    color(stamp_s, cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar(7, 8, 9)));
+    depth(stamp_s, cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(900)));
+  }
+};
+
+TEST_F(ChangedCamera, begins_again_with_the_new_size_and_calibration) {
+  begin();
+  both(1.1);
+  info(small_info());
+  for (int i = 0; i < 40; ++i) small(1.2 + 0.033 * i);
+  DeviceSource played = source();
+  EXPECT_EQ(only_frame(played).image.color_bgr.cols, 32);
+  const SourceFrame frame = played.next().value();
+  EXPECT_EQ(frame.image.color_bgr.cols, kWidth);
+  EXPECT_EQ(frame.image.camera.parameters().fx, 15);
+  EXPECT_EQ(frame.image.seq, 1U);
+  ASSERT_FALSE(reported_.empty());
+  EXPECT_THAT(reported_.front(), AllOf(HasSubstr("16 x 12"), HasSubstr("32 x 24"), HasSubstr("again")));
+  EXPECT_EQ(played.counters().reconnects, 1U);
+}
+
+TEST_F(ChangedCamera, of_the_same_size_with_another_lens_begins_again) {
+  begin();
+  both(1.1);
+  info(ImageBag::camera_info(40));
+  for (int i = 0; i < 40; ++i) both(1.2 + 0.033 * i);
+  DeviceSource played = source();
+  std::optional<SourceFrame> last;
+  EXPECT_TRUE(played.open());
+  while (std::optional<SourceFrame> frame = played.next()) last = std::move(frame);
+  EXPECT_EQ(last->image.camera.parameters().fx, 40);
+  EXPECT_THAT(reported_.front(), AllOf(HasSubstr("/i has changed"), HasSubstr("fx 40"), HasSubstr("fx 30")));
+}
+
+TEST_F(ChangedCamera, that_alternates_keeps_the_frames_of_the_first_size) {
+  for (int i = 0; i < 40; ++i) {
+    info();
+    both(1.0 + 0.2 * i);
+    info(small_info());
+    small(1.1 + 0.2 * i);
+  }
+  DeviceSource played = source();
+  EXPECT_TRUE(played.open());
+  int frames = 0;
+  while (const std::optional<SourceFrame> frame = played.next()) frames += frame->image.color_bgr.cols == 32 ? 1 : 1000;
+  EXPECT_EQ(frames, 39);
+  EXPECT_EQ(played.counters().of(SkipReason::kSizeMismatch), 40U);
+}
+
+TEST_F(ChangedCamera, whose_info_never_fits_is_refused_with_both_sizes) {
+  info(small_info());
+  for (int i = 0; i < 1200; ++i) both(1.0 + 0.033 * i);
+  DeviceSource played = source();
+  EXPECT_THAT([&] { played.open(); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("colour 32 x 24"), HasSubstr("calibration 16 x 12"))));
+}
+
+TEST_F(UnregisteredDepth, of_another_size_is_scaled_on_request) {
+  info();
+  for (const double stamp_s : {1.0, 1.1}) {
+    color(stamp_s);
+    depth(stamp_s, cv::Mat(12, 16, CV_16UC1, cv::Scalar(1200)));
+  }
+  DeviceSource played = source(std::string(kUri) + "?registered=1");
+  const SourceFrame frame = only_frame(played);
+  EXPECT_EQ(frame.image.depth.size(), cv::Size(32, 24));
+  EXPECT_EQ(frame.image.depth.at<std::uint16_t>(23, 31), 1200);
+}
+
+TEST_F(UnregisteredDepth, of_another_shape_gets_no_advice_that_cannot_help) {
+  info();
+  for (int i = 0; i < 20; ++i) {
+    color(1.0 + 0.1 * i);
+    depth(1.0 + 0.1 * i, cv::Mat(24, 24, CV_16UC1, cv::Scalar(1200)));
+  }
+  DeviceSource played = source();
+  EXPECT_THAT([&] { played.open(); },
+              ThrowsMessage<SourceError>(AllOf(HasSubstr("24 x 24"), ::testing::Not(HasSubstr("registered=1")))));
 }
 
 TEST_F(Ros2DeviceTest, what_came_while_it_opened_is_old) {

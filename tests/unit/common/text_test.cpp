@@ -9,6 +9,11 @@ namespace {
 
 using ::testing::ElementsAre;
 
+TEST(Text, without_numbers_keeps_names_that_have_digits) {
+  EXPECT_EQ(without_numbers("event=late frame=12 ms=3.5 topic=/cam1 \"42 %\""),
+            "event=late frame=# ms=# topic=/cam1 \"# %\"");
+}
+
 TEST(ParseStamp, is_exact_to_the_nanosecond) {
   EXPECT_EQ(parse_stamp_ns("1305031102.175304"), 1305031102175304000);
   EXPECT_EQ(parse_stamp_ns("1341846313.6541841"), 1341846313654184100);

@@ -211,6 +211,22 @@ TEST(record_builder, reports_a_degraded_service_once) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
+TEST(record_builder, groups_notices_that_differ_in_their_numbers) {
+  FrameList store;
+  RecordBuilder builder(store);
+  for (std::uint64_t seq = 0; seq < 67; ++seq) {
+    builder.add(result_of(seq));
+    msg::ServiceStatus status = status_of("slam", 7, {});
+    status.state = msg::ServiceState::kDegraded;
+    status.message = seq % 2 == 0 ? "doubtful: only 42 % agree" : "doubtful: only 43 % agree";
+    builder.add(status);
+  }
+  EXPECT_EQ(builder.take_notice(), "slam: doubtful: only 42 % agree");
+  EXPECT_EQ(builder.take_notice(), std::nullopt);
+  EXPECT_THAT(builder.repeated_notices(),
+              testing::ElementsAre("slam: doubtful: only 42 % agree (67 times, from frame 1 to 67)"));
+}
+
 TEST(record_builder, names_the_services_that_report_and_have_not_finished) {
   FrameList store;
   RecordBuilder builder(store);

@@ -65,6 +65,21 @@ TEST(terminal, shows_the_message_of_a_hostile_heartbeat_without_obeying_it) {
   EXPECT_NE(out.str().find("waiting"), 0U);
 }
 
+TEST(terminal, continues_long_lines_below) {
+  std::ostringstream out;
+  Terminal terminal(out, {false, false, 80});
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += "word ";
+  terminal.warn("  " + words + std::string(200, 'x'));
+  std::istringstream lines(out.str());
+  std::vector<std::size_t> lengths;
+  for (std::string line; std::getline(lines, line);) lengths.push_back(line.size());
+  ASSERT_EQ(lengths.size(), 3U);
+  EXPECT_LE(lengths[0], 160U);
+  EXPECT_LE(lengths[1], 160U);
+  EXPECT_EQ(lengths[2], 206U) << "no word is cut";
+}
+
 TEST(terminal, quiet_shows_warnings_only) {
   std::ostringstream out;
   Terminal terminal(out, {false, true, 80});

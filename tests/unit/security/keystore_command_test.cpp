@@ -18,6 +18,7 @@ using security::kDay_s;
 using security::kNow_s;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class KeystoreCommandTest : public security::KeystoreTest {
  protected:
@@ -52,7 +53,11 @@ TEST_F(KeystoreCommandTest, a_second_one_is_refused) {
 TEST_F(KeystoreCommandTest, info_names_what_expired_and_renew_fixes_it) {
   ASSERT_EQ(run(Action::kCreate), 0);
   EXPECT_EQ(run(Action::kInfo), 0);
-  EXPECT_THAT(out_.str(), HasSubstr("ok    /rtd/slam"));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("ok    /rtd/slam"), HasSubstr("all domains"), HasSubstr(" topics out ")));
+  EXPECT_THAT(out_.str(), Not(HasSubstr("rtd/features"))) << "with --verbose";
+  request_.verbose = true;
+  EXPECT_EQ(run(Action::kInfo), 0);
+  EXPECT_THAT(out_.str(), HasSubstr("rtd/features"));
   const std::int64_t later_s = kNow_s + 400 * kDay_s;
   EXPECT_EQ(run(Action::kInfo, later_s), 1);
   EXPECT_THAT(out_.str(), AllOf(HasSubstr("FAIL  /rtd/slam"), HasSubstr("expired")));

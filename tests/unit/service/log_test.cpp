@@ -24,6 +24,25 @@ TEST(Log, a_quoted_text_can_forge_no_line_and_no_colour) {
   EXPECT_NE(text.find("\\x0a12:00:00.000 error slam event=disk_full\\x1b[2J"), std::string::npos) << text;
 }
 
+TEST(Log, events_that_differ_in_numbers_are_grouped_with_first_last_and_count) {
+  RepeatedEvents events;
+  const auto at = [](int seconds) { return RepeatedEvents::Time(std::chrono::seconds(seconds)); };
+  EXPECT_EQ(events.note("event=pose_doubtful frame=1 cause=\"only 42 %\"", at(100)), "");
+  for (int i = 2; i < 9; ++i) {
+    EXPECT_EQ(events.note("event=pose_doubtful frame=" + std::to_string(i) + " cause=\"only 43 %\"", at(100 + i)),
+              std::nullopt);
+  }
+  EXPECT_EQ(events.note("event=tracking_lost frame=9", at(109)), "") << "another kind";
+  const auto later = events.note("event=pose_doubtful frame=20 cause=\"only 7 %\"", at(111));
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->find(" repeated=7 first="), 0U) << *later;
+  EXPECT_EQ(events.note("event=pose_doubtful frame=21 cause=\"only 8 %\"", at(112)), std::nullopt);
+  const auto counted = events.take_counted();
+  ASSERT_EQ(counted.size(), 1U);
+  EXPECT_NE(counted.front().find("frame=21 cause=\"only 8 %\" repeated=1 first="), std::string::npos);
+  EXPECT_TRUE(events.take_counted().empty());
+}
+
 TEST(JsonText, holds_nothing_that_a_terminal_obeys) {
   const nlohmann::json json{{"name", "a\033\x7f\xc2\x9b\xe2\x80\xae\xc3\xbc"}};
   EXPECT_EQ(json_line(json), "{\"name\":\"a\\u001b\\u007f\\u009b\\u202e\xc3\xbc\"}");

@@ -36,5 +36,25 @@ TEST(MessageText, is_yaml_for_people) {
             "---\n");
 }
 
+TEST(MessageText, for_people_has_dates_few_digits_and_short_arrays) {
+  const auto message = nlohmann::ordered_json::parse(R"({
+    "header": {"stamp": {"sec": 1764171062, "nanosec": 123000000}, "frame_id": "map"},
+    "x": 1.23456789012, "tiny": 1e-12,
+    "covariance": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "data": {"count": 9, "first": [1, 1, 1, 1, 1, 1]},
+    "few": [2, 2]})");
+  EXPECT_EQ(message_text(message, Detail::kReadable),
+            "header:\n"
+            "  stamp: 2025-11-26 15:31:02.123 UTC\n"
+            "  frame_id: \"map\"\n"
+            "x: 1.234568\n"
+            "tiny: 1e-12\n"
+            "covariance: [6 x 0]\n"
+            "data: [1, 1, 1, 1, 1, 1, ... 9 values]\n"
+            "few: [2, 2]\n"
+            "---\n");
+  EXPECT_NE(message_text(message, Detail::kAll).find("nanosec: 123000000"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace rtd::topics

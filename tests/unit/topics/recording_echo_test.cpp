@@ -63,6 +63,7 @@ Result echo(TopicsRequest request) {
 Result echo(const TemporaryFile& file, const std::vector<std::string>& topics = {}) {
   TopicsRequest request;
   request.topics = {file.path().string()};
+  request.verbose = true;
   request.topics.insert(request.topics.end(), topics.begin(), topics.end());
   return echo(request);
 }

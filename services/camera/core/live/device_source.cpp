@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
-#include <string_view>
 #include <utility>
 
 #include "common/camera/calibration.hpp"
@@ -23,66 +21,13 @@ constexpr std::int64_t kSilentNs = 1'000'000'000;              // without an ima
 constexpr std::int64_t kPatienceNs = 3'000'000'000;            // for the first images, and for a pair
 constexpr std::int64_t kDeviceReportPeriodNs = 1'000'000'000;  // while a fault lasts
 
-constexpr std::int64_t kFaultNs = 1'000'000'000;       // what lasts as long is reported
-constexpr std::int64_t kRateWindowNs = 2'000'000'000;  // frames are counted over
-constexpr double kRateShare = 0.75;                    // of the nominal rate
+constexpr int kOtherSizes = 30;  // pairs in a row that make the new size that of the camera
 
 double seconds(std::int64_t time_ns) {
   return static_cast<double>(time_ns) * 1e-9;
 }
 
 }  // namespace
-
-void DeviceHealth::restart(std::int64_t now_ns, double fps) {
-  *this = {};
-  fps_ = fps;
-  started_ns_ = color_changed_ns_ = depth_seen_ns_ = now_ns;
-}
-
-void DeviceHealth::note_color(std::int64_t now_ns, const std::vector<std::uint8_t>& bytes) {
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const std::size_t hash = std::hash<std::string_view>{}(text);
-  if (color_hash_ && *color_hash_ == hash) return;
-  color_hash_ = hash;
-  color_changed_ns_ = now_ns;
-}
-
-void DeviceHealth::note_frame(std::int64_t now_ns, bool has_depth) {
-  if (has_depth) depth_seen_ns_ = now_ns;
-  frames_ns_.push_back(now_ns);
-  while (frames_ns_.front() <= now_ns - kRateWindowNs) frames_ns_.pop_front();
-}
-
-bool DeviceHealth::frozen(std::int64_t now_ns) const {
-  return color_hash_ && now_ns - color_changed_ns_ >= kFaultNs;
-}
-
-std::string DeviceHealth::fault(std::int64_t now_ns) const {
-  if (frozen(now_ns)) {
-    return fmt::format(
-        "the colour image has been the same to the bit for {:.1f} s, and its frames are left out: unplug the camera "
-        "and plug it in again",
-        static_cast<double>(now_ns - color_changed_ns_) * 1e-9);
-  }
-  if (now_ns - depth_seen_ns_ >= kFaultNs && !frames_ns_.empty()) {
-    return fmt::format(
-        "no pixel of the depth image has had a measurement for {:.1f} s: is the sensor covered, too close to "
-        "everything (0.4 m), in sunlight, or its projector off?",
-        static_cast<double>(now_ns - depth_seen_ns_) * 1e-9);
-  }
-  return lost_frames(now_ns);
-}
-
-std::string DeviceHealth::lost_frames(std::int64_t now_ns) const {
-  if (fps_ <= 0 || now_ns - started_ns_ < kRateWindowNs || frames_ns_.empty()) return {};
-  const double rate = static_cast<double>(frames_ns_.size()) / (static_cast<double>(kRateWindowNs) * 1e-9);
-  if (rate >= kRateShare * fps_) return {};
-  return fmt::format(
-      "only {:.1f} of {:g} frames/s arrive: use a USB 3 port of its own, a smaller mode (?width=&height=&fps=), or "
-      "more "
-      "light (automatic exposure lowers the rate)",
-      rate, fps_);
-}
 
 DeviceSource::DeviceSource(std::unique_ptr<LiveDevice> device, std::unique_ptr<DeviceClock> clock,
                            DeviceOptions options)
@@ -141,9 +86,20 @@ std::optional<SourceFrame> DeviceSource::step() {
     if (frame || !fault.empty()) report(fault);
     return frame;
   } catch (const DeviceError& error) {
-    lose(error);
+    error.problem() == DeviceProblem::kChanged ? begin_again(error.what()) : lose(error);
   }
   return std::nullopt;
+}
+
+/// Another program gives its images a new size or calibration: they make a camera of their own.
+void DeviceSource::begin_again(const std::string& why) {
+  report_now(why);
+  device_->begin_again();
+  known_ = false;
+  other_sizes_ = 0;
+  registration_.reset();
+  forget_pairs();
+  ++skips_.counters().reconnects;
 }
 
 void DeviceSource::try_to_start() {
@@ -171,7 +127,7 @@ void DeviceSource::start() {
   forget_pairs();
   timeline_.restart();
   color_ = depth_ = {};
-  started_ns_ = last_pair_ns_ = clock_->now_ns();
+  started_ns_ = last_pair_ns_ = last_frame_ns_ = clock_->now_ns();
   health_.restart(started_ns_, setup_.color.fps);
   running_ = true;
 }
@@ -217,6 +173,9 @@ void DeviceSource::adopt(const DeviceSetup& setup) {
   if (options_.uri.calibration_file.empty()) {
     info_.camera = *setup.camera;
     info_.depth_scale_m = setup.depth_scale_m;
+  }
+  for (const std::string& remark : setup.remarks) {
+    if (std::ranges::find(info_.remarks, remark) == info_.remarks.end()) info_.remarks.push_back(remark);
   }
   if (!setup.depth_camera) return;
   const auto& [camera, T_color_depth] = *setup.depth_camera;
@@ -294,15 +253,29 @@ std::optional<SourceFrame> DeviceSource::make_frame(const FramePairer::Pair& pai
   const auto mismatch = size_mismatch(name_of(color_message), color.image, depth.image, info_.camera);
   if (mismatch) {
     skips_.add(*mismatch);
+    note_other_size(color.image.size(), depth.image.size());
     return std::nullopt;
   }
+  other_sizes_ = 0;
   const std::int64_t color_ns = pair.color.stamp_ns;
-  const std::int64_t stamp_ns = managed() ? timeline_.host_ns(color_ns) + options_.epoch_ns : color_ns;
+  const std::int64_t stamp_ns = managed()                   ? timeline_.host_ns(color_ns) + options_.epoch_ns
+                                : setup_.stamped_by_arrival ? color_ns + options_.epoch_ns
+                                                            : color_ns;
   SourceFrame frame = to_frame(stamp_ns, std::move(color.image), std::move(depth.image), info_);
   set_depth_stamp(frame, stamp_ns + pair.depth.stamp_ns - color_ns, info_);
   if (managed()) health_.note_frame(now_ns, frame.has_depth);
+  last_frame_ns_ = now_ns;
   known_ = true;
   return frame;
+}
+
+void DeviceSource::note_other_size(cv::Size color_px, cv::Size depth_px) {
+  if (!run_by_others_ || ++other_sizes_ < kOtherSizes) return;
+  const auto& camera = info_.camera.parameters();
+  throw DeviceError(
+      DeviceProblem::kChanged,
+      fmt::format("{} now gives images of {} px (depth {}), no longer {} x {}: it begins again with them",
+                  device_->name(), size_text(color_px), size_text(depth_px), camera.width, camera.height));
 }
 
 void DeviceSource::restart_if_silent() {
@@ -332,7 +305,7 @@ void DeviceSource::drop_waiting() {
     return lose(error);
   }
   if (managed()) forget_pairs();
-  last_pair_ns_ = color_.arrived_ns = depth_.arrived_ns = clock_->now_ns();
+  last_pair_ns_ = last_frame_ns_ = color_.arrived_ns = depth_.arrived_ns = clock_->now_ns();
   health_.restart(last_pair_ns_, setup_.color.fps);
 }
 
@@ -354,11 +327,17 @@ std::string DeviceSource::cause() const {
   if (!running_) return problem_;
   if (!info_.live) return {};
   const std::int64_t now_ns = clock_->now_ns();
-  return now_ns - last_pair_ns_ >= kSilentNs ? silence() : health_.fault(now_ns);
+  if (now_ns - last_pair_ns_ >= kSilentNs) return silence();
+  const std::string fault = health_.fault(now_ns);
+  if (!fault.empty() || now_ns - last_frame_ns_ < kSilentNs) return fault;
+  return skips_.why_none();
 }
 
 std::string DeviceSource::silence() const {
   const Arrivals color = arrivals(color_), depth = arrivals(depth_);
+  if (!color.silent && !depth.silent) {
+    if (std::string why = skips_.why_none(); !why.empty()) return why;
+  }
   if (std::string why = device_->why_no_frame(color, depth); !why.empty()) return why;
   const auto none_of = [this](Stream stream, const Images& images) {
     const std::int64_t since_ns = images.any ? images.arrived_ns : started_ns_;

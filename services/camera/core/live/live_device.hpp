@@ -27,6 +27,7 @@ enum class DeviceProblem {
   kUnsupportedMode,  ///< it has no such size, rate or format
   kBandwidth,        ///< the USB port cannot carry the streams
   kEnded,            ///< a recording is at its end
+  kChanged,          ///< images or calibration are others than before: it begins again with these
 };
 
 /// A device cannot be used now; what() names the device, the cause and the fix.
@@ -52,6 +53,8 @@ struct DeviceSetup {
   /// Of the colour image; empty when the device does not know its own lens.
   std::optional<geometry::CameraModel> camera;
   std::optional<DepthCamera> depth_camera;  ///< empty when depth is registered to colour
+  std::vector<std::string> remarks = {};    ///< what is wrong with the images although they can be used
+  bool stamped_by_arrival = false;          ///< stamps are those of DeviceClock: the driver gives none
 };
 
 /// An image as the device gives it, not yet decoded.
@@ -85,6 +88,8 @@ class LiveDevice {
   }
   /// The next image of either stream; empty when none came within the time. kAbsent when it was unplugged.
   virtual std::optional<DeviceImage> read(std::chrono::milliseconds timeout) = 0;
+  /// Takes the images from now on as its first ones: they are others than before.
+  virtual void begin_again() {}
   /// Drops the images that wait: they are old by now.
   virtual void drop_waiting() {
     for (int i = 0; i < kMostWaiting && read(std::chrono::milliseconds(0)); ++i) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/text.hpp"
 #include "common/service/metric_names.hpp"
 
 namespace rtd::launcher {
@@ -117,7 +118,7 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
   note_troubles(status);
   const bool degraded = status.state == msg::ServiceState::kDegraded;  // a failed one ends and gives the reason itself
   const bool news = service.state != status.state || service.message != status.message;
-  if (degraded && news && !status.message.empty()) notify(status.service + ": " + status.message);
+  if (degraded && news && !status.message.empty()) notify_grouped(status.service + ": " + status.message);
   service.state = status.state;
   service.message = status.message;
 }
@@ -127,10 +128,33 @@ void RecordBuilder::set_counter(Service& service, const msg::Metric& metric) {
   service.counters[metric.name].current = metric.value;
 }
 
+/// Of those that differ in their numbers only the first; the others are counted.
+void RecordBuilder::notify_grouped(const std::string& text) {
+  const std::string about = io::without_numbers(text);
+  if (kinds_.size() < kMaxNotices || kinds_.contains(about)) {
+    Repeated& kind = kinds_[about];
+    if (kind.count++ == 0) kind.first_frame = end_of_seen_;
+    kind.last_frame = end_of_seen_;
+    kind.newest = text;
+    if (kind.count > 1) return;
+  }
+  notify(text);
+}
+
 void RecordBuilder::notify(const std::string& text) {
   if (notices_given_ == kMaxNotices) return;
   const bool last = ++notices_given_ == kMaxNotices;
   notices_.push_back(last ? "further notices are left out: the logs of the services have them" : text);
+}
+
+std::vector<std::string> RecordBuilder::repeated_notices() const {
+  std::vector<std::string> lines;
+  for (const auto& [about, kind] : kinds_) {
+    if (kind.count < 2) continue;
+    lines.push_back(
+        fmt::format("{} ({} times, from frame {} to {})", kind.newest, kind.count, kind.first_frame, kind.last_frame));
+  }
+  return lines;
 }
 
 /// Several services may report the same about a peer; it counts as new again after the peer was seen.

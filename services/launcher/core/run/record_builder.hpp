@@ -77,8 +77,10 @@ class RecordBuilder {
   /// What the camera says of itself; at its end the first piece that its source left out.
   std::string camera_message() const;
   LiveStatus live() const;
-  /// The newest message of a degraded service; returned once each time it changes.
+  /// The newest message of a degraded service; returned once, also when its numbers change.
   std::optional<std::string> take_notice();
+  /// The notices that came more than once, with number, first and last frame: for the end of a run.
+  std::vector<std::string> repeated_notices() const;
 
   /// "filter (pid 42), slam (pid 43)": every service seen that has not ended and is not tolerated. Empty when there is
   /// none.
@@ -119,6 +121,13 @@ class RecordBuilder {
   void store_oldest();
   void set_counter(Service& service, const msg::Metric& metric);
   void notify(const std::string& text);
+  void notify_grouped(const std::string& text);
+
+  /// Notices that differ in their numbers only.
+  struct Repeated {
+    std::uint64_t count = 0, first_frame = 0, last_frame = 0;
+    std::string newest;
+  };
 
   FrameStore& store_;
   std::map<std::uint64_t, Frame> frames_;  ///< by run_seq(), the newest
@@ -128,6 +137,7 @@ class RecordBuilder {
   std::optional<std::uint64_t> end_of_source_;  ///< once it has ended
   std::map<std::string, Service> services_;
   std::deque<std::string> notices_;
+  std::map<std::string, Repeated> kinds_;        ///< of notices
   std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
   std::deque<msg::TrackingResult> recent_;
   std::uint64_t end_of_seen_ = 0;      ///< highest run_seq() seen + 1

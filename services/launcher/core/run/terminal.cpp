@@ -9,6 +9,23 @@ namespace {
 
 constexpr std::chrono::milliseconds kRewriteEvery{100}, kRepeatEvery{2000};
 
+constexpr std::size_t kLongestLine = 160;  // longer ones are continued below
+constexpr const char* kContinued = "      ";
+
+/// At the last blank that fits; a word that is longer stays whole.
+std::string wrapped(const std::string& line) {
+  std::string text = line, result;
+  while (text.size() > kLongestLine) {
+    const std::size_t indent = text.find_first_not_of(' ');
+    std::size_t blank = text.rfind(' ', kLongestLine);
+    if (blank == std::string::npos || blank <= indent) blank = text.find(' ', kLongestLine);
+    if (blank == std::string::npos) break;
+    result += text.substr(0, blank) + '\n';
+    text = kContinued + text.substr(blank + 1);
+  }
+  return result + text;
+}
+
 }  // namespace
 
 void Terminal::print(const std::string& line) {
@@ -23,7 +40,7 @@ void Terminal::warn(const std::string& line) {
   clear_status();
   if (left_out_ > 0) out_ << "  (" << left_out_ << " messages left out, because the output was not read)\n";
   left_out_ = 0;
-  out_ << io::printable(line) << '\n' << std::flush;
+  out_ << wrapped(io::printable(line)) << '\n' << std::flush;
 }
 
 bool Terminal::takes_line() {

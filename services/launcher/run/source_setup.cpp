@@ -1,0 +1,105 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "common/bus/topics.hpp"
+#include "common/camera/depth_figures.hpp"
+#include "common/camera/device_uri.hpp"
+#include "common/camera/frame_source.hpp"
+#include "common/camera/live_uri.hpp"
+#include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
+#include "common/camera/synthetic/synthetic_source.hpp"
+#include "common/ros2/names.hpp"
+#include "common/run_record/run_record.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
+#include "services/launcher/run/run_setup.hpp"
+
+namespace rtd::launcher {
+using service::ConfigError;
+namespace {
+
+/// No one plugs a camera in because a run waits for it. Cameras of the network may still announce themselves.
+void require_local_camera(const std::string& source) {
+  if (!camera::is_device(source)) return;
+  const camera::DeviceUri uri = camera::parse_device_uri(source);
+  if (uri.scheme != "openni2" || uri.recorded) return;
+  const std::string why = why_no_camera(uri.device, camera::find_openni2_cameras());
+  if (!why.empty()) throw ConfigError(why);
+}
+
+std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
+  if (limit == 0) return frames;
+  return frames == 0 ? limit : std::min(frames, limit);
+}
+
+/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
+std::string doubt_about_depth(camera::FrameSource& source) {
+  const std::optional<camera::SourceFrame> first = source.next();
+  if (!first) return {};
+  camera::DepthFigures figures;
+  figures.add(first->image.depth, first->image.depth_scale_m);
+  return figures.doubt(source.info().depth_unit_given);
+}
+
+/// --imu and --wheel-odometry of a recorded source come from the recording, and so does tf. Throws ConfigError listing
+/// its topics when it does not have them. None for other sources.
+std::vector<std::string> topics_beside(const RunSetup& setup) {
+  const auto& motion = setup.services.motion;
+  const bool tf = setup.services.base.from_tf();
+  if (!motion.given() && !tf) return {};
+  const std::unique_ptr<recordings::Reader> recording =
+      camera::is_live(setup.source) ? nullptr : camera::recording_of(setup.source);
+  if (!recording) return {};
+  const auto lacks = [&](const std::string& option, const std::string& what) {
+    return ConfigError(fmt::format("{}: {} has no {}; its topics are:\n{}", option, recording->name(), what,
+                                   recordings::list_topics(*recording)));
+  };
+  std::vector<std::string> topics;
+  const auto take = [&](const char* option, const std::string& topic, const char* type) {
+    if (topic.empty()) return;
+    const bool there = std::ranges::any_of(recording->topics(), [&](const recordings::RecordedTopic& recorded) {
+      return ros2::ros_topic(recorded.name) == topic && recorded.type == type && recorded.messages > 0;
+    });
+    if (!there) throw lacks(fmt::format("{} {}", option, topic), fmt::format("{} on this topic", type));
+    topics.push_back(topic);
+  };
+  take("--imu", motion.imu, "sensor_msgs/Imu");
+  take("--wheel-odometry", motion.wheels, "nav_msgs/Odometry");
+  if (tf && std::ranges::none_of(recording->topics(), recordings::is_tf))
+    throw lacks("--camera-in-base tf", "transforms (/tf_static or /tf)");
+  if (tf) topics.push_back(ros2::ros_topic(bus::topics::kTfStatic.name));
+  return topics;
+}
+
+}  // namespace
+
+const char* usual_pace(const RunSetup& setup) {
+  if (setup.detector == "remote") return "realtime";
+  if (camera::is_device(setup.source)) return camera::parse_device_uri(setup.source).recorded ? "lockstep" : "realtime";
+  if (camera::is_live(setup.source)) return "realtime";
+  if (!camera::is_of_kind(setup.source, camera::SourceKind::kScene) || setup.frames > 0) return "lockstep";
+  const camera::SyntheticOptions scene = camera::parse_synthetic_options(camera::parse_source_uri(setup.source));
+  return scene.frames == 0 ? "realtime" : "lockstep";
+}
+
+void look_at_source(RunSetup& setup) {
+  if (camera::is_live(setup.source)) {
+    camera::check_live_uri(setup.source);
+    require_local_camera(setup.source);
+    setup.total_frames = setup.frames;
+    return;
+  }
+  const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
+  setup.total_frames = limited(source->info().frames, setup.frames);
+  setup.source_notes = source->info().notes;
+  setup.source_remarks = source->info().remarks;
+  if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);
+  setup.beside = topics_beside(setup);
+}
+
+}  // namespace rtd::launcher
