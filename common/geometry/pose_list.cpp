@@ -121,7 +121,8 @@ std::int64_t to_ns(const std::string& stamp, const Unit& unit) {
   digits += fraction;
   std::int64_t stamp_ns = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), stamp_ns);
-  if (error == std::errc() && end == digits.data() + digits.size()) return stamp_ns;
+  const bool plain = stamp.find_first_not_of("0123456789.") == std::string::npos;
+  if (plain && error == std::errc() && end == digits.data() + digits.size()) return stamp_ns;
   const double value = *io::parse_number(stamp) * std::pow(10, 9 - unit.digits);
   if (std::abs(value) > 9.2e18) throw std::invalid_argument("stamp '" + stamp + "' is out of range");
   return std::llround(value);

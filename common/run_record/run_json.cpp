@@ -145,8 +145,8 @@ Json record_json(const RunRecord& record) {
 
 void read_lists(const Json& json, RunRecord& record) {
   for (const auto& [place, count] : json.at("drops").items()) from_value(count, record.drops[place]);
-  for (const auto& [reason, count] : json.value("left_out", Json::object()).items())
-    from_value(count, record.left_out[reason]);
+  if (const auto left_out = json.find("left_out"); left_out != json.end())  // earlier versions did not write it
+    for (const auto& [reason, count] : left_out->items()) from_value(count, record.left_out[reason]);
   for (const auto& [name, usage] : json.at("processes").items()) {
     ProcessUsage& process = record.processes[name];
     from_value(usage.at("cpu_s"), process.cpu_s);

@@ -106,8 +106,8 @@ struct FrameUse {
 
   /// Frames with pose / frames given, in [0, 1]; NaN without frames.
   double coverage() const;
-  /// Less than half of the frames were used: whatever the poses are worth, they are not those of this source.
-  bool too_few() const { return 2 * used < given; }
+  /// No more than half of the frames were used: whatever the poses are worth, they are not those of this source.
+  bool too_few() const { return 2 * used <= given && used < given; }
   /// "40 given, 38 used, 37 with pose".
   std::string text() const;
 };

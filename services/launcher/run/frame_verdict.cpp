@@ -37,9 +37,9 @@ std::vector<Cause> causes_of(const run_record::RunRecord& record) {
 
 }  // namespace
 
-std::string why_too_few(const run_record::RunRecord& record, const std::string& first_left_out) {
+std::string why_not_used(const run_record::RunRecord& record, const std::string& first_left_out) {
   const run_record::FrameUse use = run_record::frame_use(record);
-  if (!use.too_few()) return {};
+  if (10 * use.used >= 9 * use.given) return {};
   const std::vector<Cause> causes = causes_of(record);
   const Cause most = *std::ranges::max_element(causes, {}, &Cause::frames);
   std::string text = fmt::format("only {} of {} frames were used; {:.0f} x {}: {}", use.used, use.given, most.frames,

@@ -8,9 +8,8 @@
 
 namespace rtd::launcher {
 
-/// Why most frames of a run were not used: how many were, the commonest cause and what helps. `first_left_out`: the
-/// first piece that the source left out, as the camera describes it; may be empty. Empty when at least half of the
-/// frames were used.
-std::string why_too_few(const run_record::RunRecord& record, const std::string& first_left_out);
+/// Why frames of a run were not used: how many were, the commonest cause and what helps. `first_left_out`: the first
+/// piece that the source left out, as the camera describes it; may be empty. Empty when nine of ten frames were used.
+std::string why_not_used(const run_record::RunRecord& record, const std::string& first_left_out);
 
 }  // namespace rtd::launcher

@@ -121,16 +121,16 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   const RunOutcome outcome = session.run(plans);
   end_trace(setup, terminal);
   run_record::RunRecord record = session.record();
-  const std::string too_few = why_too_few(record, session.camera_message());
-  result.code = exit_code(outcome, session.tracked_any(), !too_few.empty());
+  const std::string not_used = why_not_used(record, session.camera_message());
+  result.code = exit_code(outcome, session.tracked_any(), run_record::frame_use(record).too_few());
   if (outcome == RunOutcome::kConfigError) return result;
-  if (!too_few.empty()) record.events.push_back(too_few);
+  if (!not_used.empty()) record.events.push_back(not_used);
   write_record(record, setup.out_dir);
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   end.begin(result.code);
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
-  if (outcome == RunOutcome::kComplete && !too_few.empty()) terminal.warn("rtd: " + too_few);
+  if (outcome == RunOutcome::kComplete && !not_used.empty()) terminal.warn("rtd: " + not_used);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   if (lost_locks() > 0) {  // threads that stand still cannot be waited for
     std::cout.flush();

@@ -75,6 +75,8 @@ class RunJson : public testing::Test {
     run_.version = "1.2.3";
     run_.clocks = {{"detector", -3.25, 0.5}};
     run_.samples = {fabricated_sample(3)};
+    run_.frames_left_out = 7;
+    run_.left_out = {{"stamp_backwards", 5}, {"stamp_doubled", 2}};
     run_.judged_frames = {{run_.frames[0].tracking.stamp_ns, {{1.5F, 2.25F, true}, {-0.1F, 479.0F, false}}}};
     run_.frames[2].tracking.T_world_camera.translation_m[1] = std::numeric_limits<double>::quiet_NaN();
     run_.frames[3].filter_stage_ms[0] = std::numeric_limits<float>::infinity();

@@ -119,11 +119,13 @@ TEST_F(SupervisorTest, a_camera_that_gave_up_before_its_first_frame_is_not_start
   supervisor.start(camera(), now);
   served = true;
   host.end("camera", {1, 0});
-  advance(milliseconds(250));
+  advance(milliseconds(10));
+  advance(milliseconds(2000));
   EXPECT_EQ(restarts("camera"), 1) << "it gave frames";
   served = false;
   host.end("camera", {0, 11});
-  advance(milliseconds(1000));
+  advance(milliseconds(10));
+  advance(milliseconds(2000));
   EXPECT_EQ(restarts("camera"), 2) << "a crash is no decision of the camera";
   host.end("camera", {1, 0});
   advance(milliseconds(5000));
