@@ -240,21 +240,16 @@ TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
 TEST(TumSource, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
   const SequenceFolder folder;
   folder.three_frames();
-  folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw
-1.0 0 0 0 0 0 0 1
-1.1 nan 0 0 0 0 0 1
-");
+  folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
   auto source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(1));
   EXPECT_THAT(source->info().remarks, ElementsAre(HasSubstr("1 title line"), HasSubstr("1 row of nan left out")));
-  folder.write("groundtruth.txt", "1.0 0 0 0 90 45 10
-");
+  folder.write("groundtruth.txt", "1.0 0 0 0 90 45 10\n");
   source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(0));
   EXPECT_THAT(source->info().remarks,
               ElementsAre(AllOf(HasSubstr("ground truth not used: "), HasSubstr("groundtruth.txt:1: 7 columns"))));
-  folder.write("groundtruth.txt", "100001000 0 0 0 0 0 0 1
-");
+  folder.write("groundtruth.txt", "100001000 0 0 0 0 0 0 1\n");
   EXPECT_THAT(make_source(folder.uri())->info().remarks, ElementsAre(HasSubstr("no pose at the time of the frames")));
 }
 
@@ -262,11 +257,7 @@ TEST(TumSource, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_ot
   const SequenceFolder folder;
   folder.three_frames();
   folder.write("groundtruth.txt",
-               "timestamp tx ty tz qx qy qz qw
-1.0 0 0 0 0 0 0 1
-1.1 0 0 broken 0 0 0 1
-1.2 1 0 0 0 0 0 1
-");
+               "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 0 0 broken 0 0 0 1\n1.2 1 0 0 0 0 0 1\n");
   const auto source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(2));
   EXPECT_THAT(source->info().notes, testing::Contains(HasSubstr("2 poses of groundtruth.txt; 2 belong")));
