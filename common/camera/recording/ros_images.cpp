@@ -158,9 +158,8 @@ cv::Mat view_of(msg::Image& image, int type) {
 
 std::string remark_on(const RecordedMessage& message, const msg::Image& image, int type) {
   if (fits_its_step(image, type)) return {};
-  return message.topic + ": the field 'step' is " + std::to_string(image.step) + ", a row of " +
-         std::to_string(image.width) + " px of " + image.encoding + " has " + std::to_string(row_bytes(image, type)) +
-         " bytes; as the pixels are complete, rows are read one behind the other";
+  return message.topic + ": the field 'step' is " + std::to_string(image.step) + ", not " +
+         std::to_string(row_bytes(image, type)) + ": rows without gaps are read";
 }
 
 ImageRead raw_color(const RecordedMessage& message) {
