@@ -2,45 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/network.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <opencv2/core/utils/logger.hpp>
 #include <optional>
 #include <utility>
 
 #include "services/detector/core/decoders/yolov5.hpp"
+#include "services/detector/core/model_file.hpp"
 
 namespace rtd::detector {
 namespace {
 
-constexpr const char* kFix = "run `deploy/setup.sh --models`, or name another file with detector.model";
-
 [[noreturn]] void fail(const std::string& path, const std::string& cause) {
-  throw ModelError("detector model '" + path + "': " + cause + "; " + kFix);
+  ModelName{"detector model", "detector.model", path}.refuse(cause);
 }
-
-std::vector<std::uint8_t> read_bytes(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "there is no such file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) fail(path, "cannot be opened");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) fail(path, "is empty");
-  return bytes;
-}
-
-/// OpenCV logs what it throws; here the exception is enough.
-class QuietOpenCv {
- public:
-  QuietOpenCv() : saved_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietOpenCv() { cv::utils::logging::setLogLevel(saved_); }
-  QuietOpenCv(const QuietOpenCv&) = delete;
-  QuietOpenCv& operator=(const QuietOpenCv&) = delete;
-
- private:
-  cv::utils::logging::LogLevel saved_;
-};
 
 constexpr int kSideMultiple = 32;  // the largest stride
 
@@ -93,7 +66,7 @@ Network::Network(DetectorConfig config) : config_(std::move(config)) {
 }
 
 void Network::load() {
-  const std::vector<std::uint8_t> bytes = read_bytes(config_.model_path);
+  const std::vector<std::uint8_t> bytes = read_model_file({"detector model", "detector.model", config_.model_path});
   const OnnxFile file = read_onnx_file(bytes.data(), bytes.size());
   if (!file.has_graph) fail(config_.model_path, "is not an ONNX model, or is cut off");
   complete_config(file);
