@@ -41,6 +41,11 @@ std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::Ca
   return cells;
 }
 
+struct SurfacesInView {
+  const DepthGrid& grid;
+  const DepthClusters& clusters;
+};
+
 /// A depth cluster as far as it lies inside a box.
 struct ClusterInBox {
   std::int32_t label;
@@ -228,16 +233,36 @@ std::vector<int> with_holes_on(const PixelCells& pixels, const DepthGrid& grid, 
   return both;
 }
 
-/// Leaves what lies beside the object's pixels to its surroundings. Its holes stay: networks, too, miss dark clothes.
-void cut_by_pixels(SceneObject& object, const PixelCells& pixels, const GridShape& shape) {
+/// Leaves what lies beside the object's pixels to its surroundings, but for its holes and the cells for which `stays`
+/// says so: networks miss dark clothes and arms.
+void cut_by_pixels(SceneObject& object, const PixelCells& pixels, const GridShape& shape, const auto& stays) {
   const auto is_near = [&](int cell) { return pixels.near[static_cast<std::size_t>(cell)] != 0; };
   std::erase_if(object.cells, [&](int cell) {
-    return pixels.reach.contains(cell % shape.columns, cell / shape.columns) && !is_near(cell);
+    return pixels.reach.contains(cell % shape.columns, cell / shape.columns) && !is_near(cell) && !stays(cell);
   });
+  const auto holds = [](const std::vector<int>& cells, int cell) {
+    return std::binary_search(cells.begin(), cells.end(), cell);
+  };
   for (const int cell : all_cells(pixels.reach, shape)) {
-    const bool hole = std::binary_search(object.holes.begin(), object.holes.end(), cell);
-    if (!is_near(cell) && !hole) object.around.push_back(cell);
+    if (!is_near(cell) && !holds(object.cells, cell) && !holds(object.holes, cell)) object.around.push_back(cell);
   }
+}
+
+/// What the depth shows of an object, its cluster being known; with its pixels.
+void cut_by_depth(SceneObject& object, const ClusterInBox& cluster, const std::vector<ClusterInBox>& inside,
+                  const std::optional<PixelCells>& pixels, const SurfacesInView& view, const MaskConfig& config) {
+  const auto& [grid, clusters] = view;
+  const std::vector<Share> shares = shares_of(cluster, inside, clusters, config);
+  object.cells = collect_cells(cluster, object.box, shares, grid, clusters, config);
+  object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+  if (object.flat) return;
+  if (config.holes) object.holes = holes_beside(object.cells, object.box, grid);
+  if (!pixels) return;
+  if (config.holes) object.holes = with_holes_on(*pixels, grid, object.holes);
+  cut_by_pixels(
+      object, *pixels, grid.shape, [&](int cell) {  // depth knows a cluster that lies mostly in the box better
+        return shares[static_cast<std::size_t>(clusters.label[static_cast<std::size_t>(cell)])] == Share::kAll;
+      });
 }
 
 }  // namespace
@@ -295,17 +320,13 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
     const auto pixels = pixels_count ? pixel_cells(from, camera, grid.shape) : std::nullopt;
     const ClusterInBox* cluster = choose_cluster(from, inside, pixels, config);
     if (cluster != nullptr) {
-      object.cells =
-          collect_cells(*cluster, *box, shares_of(*cluster, inside, clusters, config), grid, clusters, config);
-      object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
-      if (!object.flat && config.holes) object.holes = holes_beside(object.cells, *box, grid);
-      if (!object.flat && config.holes && pixels) object.holes = with_holes_on(*pixels, grid, object.holes);
+      cut_by_depth(object, *cluster, inside, pixels, {grid, clusters}, config);
     } else if (from.carried && !config.whole_boxes) {
       continue;
     } else {
       object.cells = all_cells(*box, grid.shape);
+      if (pixels) cut_by_pixels(object, *pixels, grid.shape, [](int /*cell*/) { return false; });
     }
-    if (!object.flat && pixels) cut_by_pixels(object, *pixels, grid.shape);
     objects.push_back(std::move(object));
   }
   return objects;

@@ -90,13 +90,21 @@ TEST(ObjectMasks, holes_in_the_pixels_of_a_person_are_the_person_and_others_are_
   EXPECT_EQ(count_in(kShape, mask_of(object.around), {360, 120, 4, 280}), 0) << "within a cell of the mask";
 }
 
-TEST(ObjectMasks, what_is_as_near_as_a_person_but_not_of_its_pixels_is_surroundings) {
+TEST(ObjectMasks, what_a_person_has_grown_together_with_is_cut_by_the_pixels) {
   vision::RgbdImage image = wall_image(3.0);
-  put_block(image, {240, 120, 160, 280}, 1.5);  // the person and a cupboard, one cluster
+  put_block(image, {240, 120, 400, 280}, 1.5);  // the person and a cupboard, one cluster
   const SceneObject object = find_masked(image, kPersonPx);
   EXPECT_EQ(count_in(kShape, mask_of(object), kPersonPx), cells_in(kPersonPx));
   EXPECT_EQ(count_in(kShape, mask_of(object), {364, 120, 36, 280}), 0);
   EXPECT_FALSE(object.flat);
+}
+
+TEST(ObjectMasks, a_cluster_that_lies_in_the_box_is_the_object_whatever_the_network_missed) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, kPersonPx, 1.5);
+  const SceneObject object = find_masked(image, {240, 120, 120, 160});  // without the legs
+  EXPECT_EQ(object.cells.size(), static_cast<std::size_t>(cells_in(kPersonPx)));
+  EXPECT_EQ(count_in(kShape, mask_of(object.around), kPersonPx), 0);
 }
 
 TEST(ObjectMasks, the_pixels_choose_between_two_surfaces_in_a_box) {
