@@ -17,8 +17,9 @@ std::int64_t to_ns(double seconds) {
 
 }  // namespace
 
-DetectorPace::DetectorPace(Look look, const DetectorOptions& options)
+DetectorPace::DetectorPace(Look look, const DetectorOptions& options, LookAtPixels pixels)
     : look_(std::move(look)),
+      pixels_(std::move(pixels)),
       outages_(options.outages),
       delay_ns_(to_ns(options.delay_ms * 1e-3)),
       busy_ns_(std::max(delay_ns_, options.rate_hz > 0 ? to_ns(1.0 / options.rate_hz) : 0)) {}
@@ -37,13 +38,19 @@ filter::DetectorUpdate DetectorPace::advance_to(const camera::SourceFrame& frame
   return update;
 }
 
+filter::DetectionBatch DetectorPace::look(const camera::SourceFrame& frame) const {
+  filter::DetectionBatch batch{frame.image.stamp_ns, look_(frame), {}};
+  if (pixels_) batch.masks = pixels_(frame, batch.detections);
+  return batch;
+}
+
 /// Takes the waiting image as soon as the detector is free; one that meets an outage is lost.
 void DetectorPace::look_until(std::int64_t now_ns) {
   if (!waiting_) return;
   const std::int64_t start_ns = std::max(free_ns_, waiting_->image.stamp_ns);
   if (start_ns > now_ns) return;
   if (!gone(start_ns)) {
-    under_way_.push_back({start_ns + delay_ns_, {waiting_->image.stamp_ns, look_(*waiting_)}});
+    under_way_.push_back({start_ns + delay_ns_, look(*waiting_)});
     free_ns_ = start_ns + busy_ns_;
   }
   waiting_.reset();

@@ -15,7 +15,8 @@ namespace rtd::test_support {
 /// delay. Without rate, delay and outages every frame has its own boxes, as in lockstep. Deterministic.
 class DetectorPace {
  public:
-  DetectorPace(Look look, const DetectorOptions& options);
+  /// Without `pixels`: boxes alone.
+  DetectorPace(Look look, const DetectorOptions& options, LookAtPixels pixels = {});
 
   /// Plays the time up to this frame; what has reached the filter when it judges it.
   filter::DetectorUpdate advance_to(const camera::SourceFrame& frame);
@@ -25,11 +26,13 @@ class DetectorPace {
     std::int64_t due_ns;
     filter::DetectionBatch batch;
   };
+  filter::DetectionBatch look(const camera::SourceFrame& frame) const;
   void look_until(std::int64_t now_ns);
   bool gone(std::int64_t at_ns) const;
   bool silence_noticed(std::int64_t at_ns) const;
 
   Look look_;
+  LookAtPixels pixels_;
   std::vector<Outage> outages_;
   std::int64_t delay_ns_, busy_ns_;
   std::optional<std::int64_t> first_ns_;

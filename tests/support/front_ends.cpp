@@ -60,7 +60,8 @@ class Filtered final : public FrontEnd {
            const std::vector<ImageFault>& faults)
       : filter_(config, service::monotonic_ns), roll_(detector.roll), faults_(faults) {
     if (!look) return;
-    detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector);
+    detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector,
+                      make_look_at_pixels(detector));
   }
 
   FrontEndOutput process(const camera::SourceFrame& frame) override {

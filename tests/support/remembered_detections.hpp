@@ -13,4 +13,7 @@ namespace rtd::test_support {
 /// Throws std::invalid_argument for a file that is not one of its own.
 Look remembered_look(Look look, const std::string& file);
 
+/// The same for masks.
+LookAtPixels remembered_pixels(LookAtPixels look, const std::string& file);
+
 }  // namespace rtd::test_support

@@ -12,6 +12,7 @@
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
+#include "services/detector/core/person_segmenter.hpp"
 #include "tests/support/remembered_detections.hpp"
 
 namespace rtd::test_support {
@@ -153,7 +154,60 @@ Look jitter(Look look, const DetectorOptions& options) {
   };
 }
 
+/// Of the boxes of people that contain a place, the one in whose middle it lies most.
+std::uint8_t person_at(const Boxes& boxes, float x_px, float y_px) {
+  float best = 1;
+  std::uint8_t label = 0;
+  for (std::size_t i = 0; i < std::min(boxes.size(), vision::kMaxMasks); ++i) {
+    const vision::Detection& box = boxes[i];
+    if (box.class_name != "person") continue;
+    const float x = std::abs(2 * (x_px - box.x_px) / box.width_px - 1);
+    const float y = std::abs(2 * (y_px - box.y_px) / box.height_px - 1);
+    if (std::max(x, y) > best) continue;
+    best = std::max(x, y);
+    label = static_cast<std::uint8_t>(i + 1);
+  }
+  return label;
+}
+
+vision::PersonMasks true_pixels(const camera::SourceFrame& frame, const Boxes& boxes) {
+  const cv::Mat& moving = frame.dynamic_mask;
+  if (moving.empty()) throw std::invalid_argument("masks truth: the source has no masks (tum:DIR?masks=1)");
+  constexpr int kStep = vision::kMaskStepPx;
+  vision::PersonMasks masks{(moving.cols + kStep - 1) / kStep, (moving.rows + kStep - 1) / kStep, {}};
+  for (int row = 0; row < masks.rows; ++row) {
+    for (int column = 0; column < masks.columns; ++column) {
+      const cv::Rect place = cv::Rect(column * kStep, row * kStep, kStep, kStep) & cv::Rect({}, moving.size());
+      const bool moves = 2 * cv::countNonZero(moving(place)) >= place.area();
+      const float x_px = static_cast<float>(column * kStep) + 0.5F * (kStep - 1);
+      const float y_px = static_cast<float>(row * kStep) + 0.5F * (kStep - 1);
+      masks.labels.push_back(moves ? person_at(boxes, x_px, y_px) : std::uint8_t{0});
+    }
+  }
+  return masks;
+}
+
+/// Every mask anew: a frame then has the same ones in every run.
+LookAtPixels segmented_pixels(const std::string& model_path) {
+  detector::MaskConfig config;
+  config.model_path = model_path;
+  config.engine = "cpu";
+  return [segmenter = std::shared_ptr<detector::PersonSegmenter>(), config](const auto& frame,
+                                                                            const Boxes& boxes) mutable {
+    if (segmenter == nullptr) segmenter = std::make_shared<detector::PersonSegmenter>(config);
+    return segmenter->segment(frame.image.color_bgr, boxes, config.masks_per_frame);
+  };
+}
+
 }  // namespace
+
+LookAtPixels make_look_at_pixels(const DetectorOptions& options) {
+  if (options.masks == "off") return {};
+  if (options.masks == "truth") return true_pixels;
+  LookAtPixels look = segmented_pixels(options.masks);
+  if (options.masks_remembered_in.empty()) return look;
+  return remembered_pixels(std::move(look), options.masks_remembered_in);
+}
 
 Look make_look(const DetectorOptions& options) {
   if (options.recall < kLeastRecall || options.recall > 1) {

@@ -12,6 +12,7 @@
 #include "common/camera/frame_source.hpp"
 #include "common/service/model_table.hpp"
 #include "common/vision/detection.hpp"
+#include "common/vision/person_masks.hpp"
 #include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector_config.hpp"
 
@@ -46,12 +47,23 @@ struct DetectorOptions {
   double confidence = detector::DecodeConfig{}.confidence_threshold;
   /// real: on the image turned upright, as rtd-detector does; none = as it is
   std::optional<detector::RollConfig> derotate;
-  std::string remembered_in;                   ///< real and truth: file of known answers (remembered_detections.hpp)
+  std::string remembered_in;  ///< real and truth: file of known answers (remembered_detections.hpp)
+  /// off; truth: the source's moving pixels in its boxes of people; else: the ONNX file of a network for them
+  std::string masks = "off";
+  std::string masks_remembered_in;             ///< of a network: file of known answers
   std::shared_ptr<detector::CameraRoll> roll;  ///< of the run, made from `derotate`
 };
 
 /// The boxes that a detector finds in one frame.
 using Look = std::function<std::vector<vision::Detection>(const camera::SourceFrame&)>;
+
+/// The pixels of these detections in one frame.
+using LookAtPixels =
+    std::function<vision::PersonMasks(const camera::SourceFrame&, const std::vector<vision::Detection>&)>;
+
+/// As DetectorOptions::masks says; empty for off. Throws detector::ModelError for a network that cannot be used and, at
+/// a frame without true masks, std::invalid_argument.
+LookAtPixels make_look_at_pixels(const DetectorOptions& options);
 
 /// What the detector of `options` finds; a pure function of seed and frame for truth and lying. Not for kind off.
 /// Throws std::invalid_argument for an unknown kind and, at the first frame, for truth without SourceFrame::objects.

@@ -130,6 +130,11 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       ->check(CLI::Range(0.0, 1.0));
   app.add_option("--detector-model", detector.model, "real: its network")->capture_default_str();
   app.add_option("--detector-confidence", detector.confidence, "real: least score");
+  app.add_option(
+      "--masks", detector.masks,
+      "off; truth: moving pixels of the source in the boxes of people; or the ONNX file of a network for them");
+  app.add_option("--remembered-masks", detector.masks_remembered_in,
+                 "of a network: file that remembers its answers for this source and its detections");
   CLI::Option* derotate = app.add_option_function<double>(
       "--derotate",
       [&detector](double min_deg) {

@@ -24,9 +24,28 @@ msg::FeatureFlag mask_flag(MotionLevel level) {
   return msg::kFeatureInLowMask;
 }
 
+/// Per cell, not 0 = no mask grows onto it: the surroundings of one object by its mask of pixels, where no object is.
+CellMask without_growth(const FrameKnowledge& known, int dilate_cells) {
+  const CellMask none(static_cast<std::size_t>(known.shape.size()), 0);
+  CellMask around = none;
+  for (const SceneObject& object : known.objects) {
+    for (const int cell : object.around) around[static_cast<std::size_t>(cell)] = 1;
+  }
+  if (around == none) return around;
+  for (const SceneObject& object : known.objects) {
+    if (object.flat) continue;
+    CellMask grown = none;
+    for_each_covered_cell(object, [&](std::size_t cell) { grown[cell] = 1; });
+    grown = dilate(known.shape, std::move(grown), dilate_cells);
+    for (const int cell : object.around) grown[static_cast<std::size_t>(cell)] = 0;
+    for (std::size_t cell = 0; cell < grown.size(); ++cell) around[cell] = grown[cell] == 0 ? around[cell] : 0;
+  }
+  return around;
+}
+
 /// The object on each cell, dilated, -1 = none. Where masks overlap the higher level wins: a monitor behind a person is
 /// left to geometry, the person is not.
-std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_cells) {
+std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_cells, const CellMask& around) {
   std::vector<std::int16_t> order;  // objects in ascending order of level
   std::vector<std::int16_t> rank(static_cast<std::size_t>(known.shape.size()), -1);
   for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
@@ -38,19 +57,32 @@ std::vector<std::int16_t> paint_objects(const FrameKnowledge& known, int dilate_
     }
   }
   std::vector<std::int16_t> painted = largest_near(known.shape, std::move(rank), dilate_cells);
-  for (std::int16_t& object : painted) object = object < 0 ? object : order[static_cast<std::size_t>(object)];
+  for (std::size_t cell = 0; cell < painted.size(); ++cell) {
+    const std::int16_t of = painted[cell];
+    painted[cell] = of < 0 || around[cell] != 0 ? std::int16_t{-1} : order[static_cast<std::size_t>(of)];
+  }
+  return painted;
+}
+
+/// What moves, dilated.
+CellMask paint_motion(const FrameKnowledge& known, int dilate_cells, const CellMask& around) {
+  CellMask painted = dilate(known.shape, known.regions.hold_cs, dilate_cells);
+  for (std::size_t cell = 0; cell < painted.size(); ++cell) {
+    if (around[cell] != 0) painted[cell] = known.regions.hold_cs[cell];
+  }
   return painted;
 }
 
 /// The beliefs with those in objects that may not be used spread around them: the outline of a mask is not exact.
-CellBeliefs grow_doubt(const FrameKnowledge& known, int cells) {
+CellBeliefs grow_doubt(const FrameKnowledge& known, int cells, const CellMask& around) {
   CellBeliefs doubt(known.beliefs.size(), 0);
   for (std::size_t cell = 0; cell < doubt.size(); ++cell) {
     if (known.object_on[cell] >= 0) doubt[cell] = std::min(known.beliefs[cell], 0.0F);
   }
   CellBeliefs grown = smallest_near(known.shape, std::move(doubt), cells);
   for (std::size_t cell = 0; cell < grown.size(); ++cell) {
-    grown[cell] = grown[cell] < 0 ? std::min(known.beliefs[cell], grown[cell]) : known.beliefs[cell];
+    const bool doubted = grown[cell] < 0 && around[cell] == 0;
+    grown[cell] = doubted ? std::min(known.beliefs[cell], grown[cell]) : known.beliefs[cell];
   }
   return grown;
 }
@@ -87,10 +119,11 @@ void weigh_alike(std::vector<msg::Feature>& features) {
 
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config) {
-  const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells);
-  const CellMask dynamic = dilate(known.shape, known.regions.hold_cs, config.masks.dilate_cells);
+  const CellMask around = without_growth(known, config.masks.dilate_cells);
+  const std::vector<std::int16_t> painted = paint_objects(known, config.masks.dilate_cells, around);
+  const CellMask dynamic = paint_motion(known, config.masks.dilate_cells, around);
   const CellMask in_question = dilate(known.shape, known.in_question, config.masks.dilate_cells);
-  const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells);
+  const CellBeliefs beliefs = grow_doubt(known, config.masks.dilate_cells, around);
   for (msg::Feature& feature : features) {
     const auto cell = static_cast<std::size_t>(known.shape.nearest_cell(feature.u_px, feature.v_px));
     feature.flags = 0;

@@ -83,6 +83,7 @@ void BoxTracks::update(const DetectionBatch& batch, const DepthOfBox& depth_of) 
       const auto column = static_cast<std::size_t>(column_of[row]);
       taken[column] = 1;
       hit(*track, step, batch.detections[column], depths[column]);
+      keep_mask(*track, batch, column, stamp_ns);
     } else if (newest) {
       miss(*track, step, frames_[*frame]);
     }
@@ -125,6 +126,16 @@ void BoxTracks::hit(Track& track, std::size_t step, const vision::Detection& det
   track.distrusted_ns = 0;
 }
 
+/// The newest mask of the object, by the frame that shows it.
+void BoxTracks::keep_mask(Track& track, const DetectionBatch& batch, std::size_t detection, std::int64_t stamp_ns) {
+  if (batch.masks.empty() || detection >= vision::kMaxMasks) return;
+  if (!track.mask.empty() && stamp_ns < track.mask_ns) return;
+  BoxMask mask(batch.masks, static_cast<std::uint8_t>(detection + 1), batch.detections[detection]);
+  if (mask.empty()) return;
+  track.mask = std::move(mask);
+  track.mask_ns = stamp_ns;
+}
+
 void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) const {
   constexpr double kMostlyVisible = 0.4;
   if (frame.rolling || frame.stamp_ns <= track.last_hit_ns) return;
@@ -150,6 +161,7 @@ void BoxTracks::start_track(const DetectionBatch& batch, std::size_t detection, 
   }
   track.steps.front().seen = d;
   replay(track, 1);
+  keep_mask(track, batch, detection, frames_[frame].stamp_ns);
   tracks_.push_back(std::move(track));
 }
 
@@ -205,6 +217,7 @@ std::vector<TrackedBox> BoxTracks::boxes() {
         now.seen ? *now.seen : to_detection(voted_class(track.votes), track.score, now.state.box());
     boxes.push_back({track.id, std::move(detection), !now.seen.has_value(), now.depth_m,
                      msg::minus_s(now.stamp_ns, track.first_ns)});
+    if (msg::minus_ns(now.stamp_ns, track.mask_ns) <= kMaskLivesNs) boxes.back().mask = track.mask;
   }
   return boxes;
 }

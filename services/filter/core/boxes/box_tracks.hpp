@@ -14,6 +14,7 @@
 #include "common/vision/person_masks.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/surfaces/box_mask.hpp"
 
 namespace rtd::filter {
 
@@ -53,6 +54,7 @@ struct TrackedBox {
   bool carried = false;
   double depth_m = 0;  ///< of the object, 0 = unknown
   double age_s = 0;    ///< since it was seen first
+  BoxMask mask = {};   ///< its newest one, not older than kMaskLivesNs; may be empty
 };
 
 /// One step of a box from image to image that optical flow may measure.
@@ -95,6 +97,7 @@ class BoxTracks {
   void clear();
 
   static constexpr std::size_t kMaxTracks = 64, kMaxFrames = 32;
+  static constexpr std::int64_t kMaskLivesNs = 300'000'000;  ///< people change their shape meanwhile
 
  private:
   /// A track in one frame.
@@ -115,10 +118,13 @@ class BoxTracks {
     std::int64_t first_ns = 0, last_hit_ns = 0;
     std::int64_t distrusted_ns = 0;  ///< rolling time since the last hit, does not count against it
     bool dead = false;
+    BoxMask mask;
+    std::int64_t mask_ns = 0;
   };
   std::optional<std::size_t> frame_of(std::int64_t stamp_ns) const;
   double match_cost(const Track& track, const Step& step, const vision::Detection& detection, double depth_m) const;
   void hit(Track& track, std::size_t step, const vision::Detection& detection, double depth_m);
+  static void keep_mask(Track& track, const DetectionBatch& batch, std::size_t detection, std::int64_t stamp_ns);
   void miss(Track& track, std::size_t step, const TrackedFrame& frame) const;
   void start_track(const DetectionBatch& batch, std::size_t detection, std::size_t frame, double depth_m);
   void replay(Track& track, std::size_t from) const;

@@ -5,6 +5,7 @@
 #include "common/vision/samples.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -37,6 +38,25 @@ double depth_at(const std::vector<cv::Point2f>& points_px, const geometry::Camer
   return static_cast<double>(vision::median(std::move(depths)));
 }
 
+/// Masks of an image of this size.
+bool fit(const vision::PersonMasks& masks, const cv::Size& image_px) {
+  const auto places = [](int px) { return (px + vision::kMaskStepPx - 1) / vision::kMaskStepPx; };
+  return masks.columns == places(image_px.width) && masks.rows == places(image_px.height);
+}
+
+/// The detections that usable_detections() leaves, with the masks of those.
+DetectionBatch usable_batch(const DetectionBatch& batch, const MotionLevels& levels) {
+  DetectionBatch usable{batch.stamp_ns, {}, {}};
+  std::array<std::uint8_t, vision::kMaxMasks + 1> renumbered{};
+  for (const std::size_t index : usable_indices(batch.detections, levels)) {
+    usable.detections.push_back(batch.detections[index]);
+    if (index < vision::kMaxMasks) renumbered[index + 1] = static_cast<std::uint8_t>(usable.detections.size());
+  }
+  usable.masks = batch.masks;
+  for (std::uint8_t& label : usable.masks.labels) label = renumbered[label];
+  return usable;
+}
+
 }  // namespace
 
 ObjectTracker::ObjectTracker(const FilterConfig& config)
@@ -45,6 +65,7 @@ ObjectTracker::ObjectTracker(const FilterConfig& config)
       use_tracks_(config.techniques.box_tracks),
       use_flow_(config.techniques.mask_flow),
       distrust_roll_(config.techniques.roll_distrust),
+      use_pixels_(config.techniques.person_masks),
       levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
                                               : MotionLevels(config.motion_levels).all_high()),
       tracks_(config.tracks) {}
@@ -59,12 +80,22 @@ std::vector<SceneObject> ObjectTracker::track(const DetectorUpdate& detector, co
   return objects;
 }
 
+DetectionBatch ObjectTracker::usable_part(const DetectionBatch& batch, const vision::RgbdImage& image) const {
+  DetectionBatch usable = usable_batch(batch, levels_);
+  if (!use_pixels_ || !fit(usable.masks, image.color_bgr.size())) usable.masks = {};
+  return usable;
+}
+
 std::vector<ObjectBox> ObjectTracker::boxes_of_frame(const DetectorUpdate& detector,
                                                      const vision::RgbdImage& image) const {
   std::vector<ObjectBox> boxes;
   for (const DetectionBatch& batch : detector.batches) {
     if (batch.stamp_ns != image.stamp_ns) continue;
-    for (const auto& d : usable_detections(batch.detections, levels_)) boxes.push_back({d, -1, 0, false, 0});
+    const DetectionBatch usable = usable_part(batch, image);
+    for (std::size_t i = 0; i < usable.detections.size(); ++i) {
+      const vision::Detection& d = usable.detections[i];
+      boxes.push_back({d, -1, 0, false, 0, BoxMask(usable.masks, static_cast<std::uint8_t>(i + 1), d)});
+    }
   }
   return boxes;
 }
@@ -87,12 +118,12 @@ std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detect
     return view == nullptr ? 0.0 : depth_in_box(box, image.camera, view->grid);
   };
   for (const DetectionBatch& batch : detector.batches) {
-    tracks_.update({batch.stamp_ns, usable_detections(batch.detections, levels_)}, depth_of);
+    tracks_.update(usable_part(batch, image), depth_of);
   }
   if (use_flow_) tracks_.carry([&](const CarryStep& step) { return measure(step, image, grid, views); });
   std::vector<ObjectBox> boxes;
-  for (const TrackedBox& box : tracks_.boxes())
-    boxes.push_back({box.detection, box.id, box.age_s, box.carried, box.depth_m});
+  for (TrackedBox& box : tracks_.boxes())
+    boxes.push_back({box.detection, box.id, box.age_s, box.carried, box.depth_m, std::move(box.mask)});
   return boxes;
 }
 

@@ -29,6 +29,8 @@ class ObjectTracker {
   void clear();
 
  private:
+  /// Detections of known classes; masks of pixels only when they are used and fit the image.
+  DetectionBatch usable_part(const DetectionBatch& batch, const vision::RgbdImage& image) const;
   std::vector<ObjectBox> boxes_of_frame(const DetectorUpdate& detector, const vision::RgbdImage& image) const;
   std::vector<ObjectBox> tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
                                        const DepthGrid& grid, const ViewStore& views);
@@ -38,7 +40,7 @@ class ObjectTracker {
 
   BoxTrackConfig config_;
   MaskConfig masks_;
-  bool use_tracks_, use_flow_, distrust_roll_;
+  bool use_tracks_, use_flow_, distrust_roll_, use_pixels_;
   MotionLevels levels_;
   BoxTracks tracks_;
   MaskFlow flow_;

@@ -41,7 +41,7 @@ const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
       {FilterMode::kOff, only({}), make<RtdJudge>},
       {FilterMode::kSemantic,
-       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::box_tracks, &T::mask_flow, &T::roll_distrust,
+       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::person_masks, &T::box_tracks, &T::mask_flow, &T::roll_distrust,
              &T::more_features}),
        make<RtdJudge>},
       {FilterMode::kGeometry,

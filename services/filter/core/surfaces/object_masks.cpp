@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -39,6 +40,11 @@ std::optional<CellBox> to_cells(const vision::Detection& box, const geometry::Ca
   if (cells.left >= cells.right || cells.top >= cells.bottom) return std::nullopt;
   return cells;
 }
+
+struct SurfacesInView {
+  const DepthGrid& grid;
+  const DepthClusters& clusters;
+};
 
 /// A depth cluster as far as it lies inside a box.
 struct ClusterInBox {
@@ -160,19 +166,123 @@ std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
   return cells;
 }
 
+/// What the pixels of an object say about the cells in and near its box.
+struct PixelCells {
+  CellBox reach;  ///< the box, grown as for the network that found them: elsewhere they say nothing
+  CellMask on;    ///< the object
+  CellMask near;  ///< the object or a cell beside it: colour and depth are not registered any better
+};
+
+/// Empty where none of the object's cells can be seen.
+std::optional<PixelCells> pixel_cells(const ObjectBox& from, const geometry::CameraModel& camera,
+                                      const GridShape& shape) {
+  constexpr float kReach = 0.1F;
+  constexpr int kNearCells = 1;
+  vision::Detection grown = from.detection;
+  grown.x_px -= kReach * grown.width_px;
+  grown.y_px -= kReach * grown.height_px;
+  grown.width_px *= 1 + 2 * kReach;
+  grown.height_px *= 1 + 2 * kReach;
+  const std::optional<CellBox> reach = to_cells(grown, camera, shape);
+  if (!reach) return std::nullopt;
+  PixelCells pixels{*reach, CellMask(static_cast<std::size_t>(shape.size()), 0), {}};
+  bool any = false;
+  for (const int cell : all_cells(*reach, shape)) {
+    const Eigen::Vector2d corner_px(cell % shape.columns * shape.cell_px, cell / shape.columns * shape.cell_px);
+    const Eigen::Vector2d centre_px = corner_px.array() + 0.5 * (shape.cell_px - 1);
+    if (!from.mask.covers(camera.distort(centre_px), from.detection)) continue;
+    pixels.on[static_cast<std::size_t>(cell)] = 1;
+    any = true;
+  }
+  if (!any) return std::nullopt;
+  pixels.near = dilate(shape, pixels.on, kNearCells);
+  return pixels;
+}
+
+/// The cluster with most of the object's pixels, if any has some.
+const ClusterInBox* cluster_on_pixels(const std::vector<ClusterInBox>& inside, const CellMask& on) {
+  const ClusterInBox* best = nullptr;
+  std::ptrdiff_t most = 0;
+  for (const ClusterInBox& cluster : inside) {
+    const auto count = std::count_if(cluster.cells.begin(), cluster.cells.end(),
+                                     [&](int cell) { return on[static_cast<std::size_t>(cell)] != 0; });
+    if (count <= most) continue;
+    most = count;
+    best = &cluster;
+  }
+  return best;
+}
+
+/// Which cluster an object is: of a carried one the cluster where it is expected, else the one under its pixels or, if
+/// it has none, the nearest large one.
+const ClusterInBox* choose_cluster(const ObjectBox& from, const std::vector<ClusterInBox>& inside,
+                                   const std::optional<PixelCells>& pixels, const MaskConfig& config) {
+  if (from.carried && from.depth_m > 0) return cluster_at_depth(inside, from.depth_m, config.max_object_depth_m);
+  const ClusterInBox* under = pixels ? cluster_on_pixels(inside, pixels->on) : nullptr;
+  return under != nullptr ? under : object_cluster(inside, config.min_share);
+}
+
+/// The holes beside an object with those in its pixels, ascending.
+std::vector<int> with_holes_on(const PixelCells& pixels, const DepthGrid& grid, const std::vector<int>& beside) {
+  std::vector<int> on, both;
+  for (const int cell : all_cells(pixels.reach, grid.shape)) {
+    const auto at = static_cast<std::size_t>(cell);
+    if (pixels.on[at] != 0 && grid.depth_m[at] <= 0) on.push_back(cell);
+  }
+  std::set_union(beside.begin(), beside.end(), on.begin(), on.end(), std::back_inserter(both));
+  return both;
+}
+
+/// Leaves what lies beside the object's pixels to its surroundings, but for its holes and the cells for which `stays`
+/// says so: networks miss dark clothes and arms.
+void cut_by_pixels(SceneObject& object, const PixelCells& pixels, const GridShape& shape, const auto& stays) {
+  const auto is_near = [&](int cell) { return pixels.near[static_cast<std::size_t>(cell)] != 0; };
+  std::erase_if(object.cells, [&](int cell) {
+    return pixels.reach.contains(cell % shape.columns, cell / shape.columns) && !is_near(cell) && !stays(cell);
+  });
+  const auto holds = [](const std::vector<int>& cells, int cell) {
+    return std::binary_search(cells.begin(), cells.end(), cell);
+  };
+  for (const int cell : all_cells(pixels.reach, shape)) {
+    if (!is_near(cell) && !holds(object.cells, cell) && !holds(object.holes, cell)) object.around.push_back(cell);
+  }
+}
+
+/// What the depth shows of an object, its cluster being known; with its pixels.
+void cut_by_depth(SceneObject& object, const ClusterInBox& cluster, const std::vector<ClusterInBox>& inside,
+                  const std::optional<PixelCells>& pixels, const SurfacesInView& view, const MaskConfig& config) {
+  const auto& [grid, clusters] = view;
+  const std::vector<Share> shares = shares_of(cluster, inside, clusters, config);
+  object.cells = collect_cells(cluster, object.box, shares, grid, clusters, config);
+  object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
+  if (object.flat) return;
+  if (config.holes) object.holes = holes_beside(object.cells, object.box, grid);
+  if (!pixels) return;
+  if (config.holes) object.holes = with_holes_on(*pixels, grid, object.holes);
+  cut_by_pixels(
+      object, *pixels, grid.shape, [&](int cell) {  // depth knows a cluster that lies mostly in the box better
+        return shares[static_cast<std::size_t>(clusters.label[static_cast<std::size_t>(cell)])] == Share::kAll;
+      });
+}
+
 }  // namespace
+
+std::vector<std::size_t> usable_indices(const std::vector<vision::Detection>& detections, const MotionLevels& levels) {
+  std::vector<std::size_t> known;
+  for (std::size_t i = 0; i < detections.size(); ++i) {
+    const vision::Detection& detection = detections[i];
+    if (std::isfinite(detection.score) && is_box(detection) && levels.find(detection.class_name)) known.push_back(i);
+  }
+  std::stable_sort(known.begin(), known.end(),
+                   [&](std::size_t a, std::size_t b) { return detections[a].score > detections[b].score; });
+  if (known.size() > kMaxObjects) known.resize(kMaxObjects);
+  return known;
+}
 
 std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
                                                  const MotionLevels& levels) {
-  std::vector<const vision::Detection*> known;
-  for (const vision::Detection& detection : detections) {
-    if (std::isfinite(detection.score) && is_box(detection) && levels.find(detection.class_name))
-      known.push_back(&detection);
-  }
-  std::stable_sort(known.begin(), known.end(), [](const auto* a, const auto* b) { return a->score > b->score; });
-  if (known.size() > kMaxObjects) known.resize(kMaxObjects);
   std::vector<vision::Detection> usable;
-  for (const vision::Detection* detection : known) usable.push_back(*detection);
+  for (const std::size_t index : usable_indices(detections, levels)) usable.push_back(detections[index]);
   return usable;
 }
 
@@ -206,18 +316,16 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
     SceneObject object{detection.class_name, detection.score,  *level,       {}, false,
                        from.track_id,        from.track_age_s, from.carried, {}, *box};
     const auto inside = config.whole_boxes ? std::vector<ClusterInBox>{} : clusters_in(*box, grid, clusters);
-    const bool depth_known = from.carried && from.depth_m > 0;
-    const ClusterInBox* cluster = depth_known ? cluster_at_depth(inside, from.depth_m, config.max_object_depth_m)
-                                              : object_cluster(inside, config.min_share);
+    const bool pixels_count = *level == MotionLevel::kHigh && !config.whole_boxes && !from.mask.empty();
+    const auto pixels = pixels_count ? pixel_cells(from, camera, grid.shape) : std::nullopt;
+    const ClusterInBox* cluster = choose_cluster(from, inside, pixels, config);
     if (cluster != nullptr) {
-      object.cells =
-          collect_cells(*cluster, *box, shares_of(*cluster, inside, clusters, config), grid, clusters, config);
-      object.flat = outline_step_share(object.cells, grid, config.min_outline_step_m) < config.min_outline_share;
-      if (!object.flat && config.holes) object.holes = holes_beside(object.cells, *box, grid);
+      cut_by_depth(object, *cluster, inside, pixels, {grid, clusters}, config);
     } else if (from.carried && !config.whole_boxes) {
       continue;
     } else {
       object.cells = all_cells(*box, grid.shape);
+      if (pixels) cut_by_pixels(object, *pixels, grid.shape, [](int /*cell*/) { return false; });
     }
     objects.push_back(std::move(object));
   }

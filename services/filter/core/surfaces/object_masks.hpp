@@ -10,6 +10,7 @@
 #include "common/vision/detection.hpp"
 #include "common/vision/motion_levels.hpp"
 #include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/surfaces/box_mask.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
 #include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
@@ -30,13 +31,14 @@ struct SceneObject {
   std::string class_name;
   float score = 0;
   MotionLevel level = MotionLevel::kHigh;
-  std::vector<int> cells;  ///< ascending; what the mask covers, before dilation
-  bool flat = false;       ///< no depth step around it: a picture on a wall, geometry alone decides
-  int track_id = -1;       ///< the same object has the same number in every frame; -1 = not tracked
-  double track_age_s = 0;  ///< since it was seen first
-  bool carried = false;    ///< not detected in this frame, but carried by its track
-  std::vector<int> holes;  ///< ascending; cells of its box that touch it and have no depth: hair, dark clothes
-  CellBox box;             ///< of the detection
+  std::vector<int> cells;        ///< ascending; what the mask covers, before dilation
+  bool flat = false;             ///< no depth step around it: a picture on a wall, geometry alone decides
+  int track_id = -1;             ///< the same object has the same number in every frame; -1 = not tracked
+  double track_age_s = 0;        ///< since it was seen first
+  bool carried = false;          ///< not detected in this frame, but carried by its track
+  std::vector<int> holes;        ///< ascending; cells of its box that touch it and have no depth: hair, dark clothes
+  CellBox box;                   ///< of the detection
+  std::vector<int> around = {};  ///< ascending; what its mask of pixels leaves to its surroundings, in and near the box
 };
 
 /// Every cell that an object covers, measured or not.
@@ -53,17 +55,21 @@ struct ObjectBox {
   double track_age_s = 0;
   bool carried = false;
   double depth_m = 0;  ///< expected depth of a carried object, 0 = unknown
+  BoxMask mask = {};   ///< its pixels; empty: the depth alone cuts it from its box
 };
 
 /// Detections whose class has a level and whose numbers make a box within `kAbsurdPx` of the image, the kMaxObjects
 /// highest scores, best first.
 std::vector<vision::Detection> usable_detections(const std::vector<vision::Detection>& detections,
                                                  const MotionLevels& levels);
+/// Their places among `detections`.
+std::vector<std::size_t> usable_indices(const std::vector<vision::Detection>& detections, const MotionLevels& levels);
 /// Depth of what stands in the middle of a box, the nearer quarter of it; 0 = nothing measured.
 double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid);
 
 /// The objects with masks: inside each box the nearest large depth cluster is the object, or of a carried box the
-/// largest near its depth; the background seen through the box stays. Boxes without a level or outside the image are
+/// largest near its depth; the background seen through the box stays. Pixels, where an object of a high level has them,
+/// choose the cluster, cut it and add the holes in them. Boxes without a level or outside the image are
 /// left out, and carried ones where nothing is found.
 std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const MotionLevels& levels,
                                       const geometry::CameraModel& camera, const DepthGrid& grid,

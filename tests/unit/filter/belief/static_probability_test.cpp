@@ -141,6 +141,34 @@ TEST_F(StaticProbabilityTest, removes_people_and_nothing_else_in_semantic_mode) 
   EXPECT_FALSE(removed(background()));
 }
 
+TEST_F(StaticProbabilityTest, a_mask_of_pixels_grows_no_further_than_its_surroundings) {
+  const auto at_border = [this] { return features_[10]; };  // u = 210: cell 52 is the last of the object, this is next
+  features_[10].u_px = 213;
+  regions_.hold_cs.assign(kImageCells, 0);
+  for (const int cell : objects_[0].cells) regions_.hold_cs[static_cast<std::size_t>(cell)] = 10;
+  weigh();
+  EXPECT_TRUE(removed(at_border())) << "masks grow by a cell";
+  for (int cell = 0; cell < static_cast<int>(kImageCells); ++cell)
+    if (cell % 160 >= 53) objects_[0].around.push_back(cell);
+  weigh();
+  EXPECT_FALSE(removed(at_border()));
+  EXPECT_EQ(at_border().object_id, -1);
+  EXPECT_TRUE(removed(on_object()));
+}
+
+TEST_F(StaticProbabilityTest, the_surroundings_of_one_person_may_be_another_person) {
+  SceneObject other{"person", 0.8F, MotionLevel::kHigh, {}, false};
+  for (int cell = 0; cell < static_cast<int>(kImageCells); ++cell) {
+    if (cell % 160 >= 53) objects_[0].around.push_back(cell);
+    if (cell % 160 >= 53 && cell % 160 < 80) other.cells.push_back(cell);
+  }
+  objects_.push_back(other);
+  motions_.push_back(ObjectMotion::kUnknown);
+  features_[10].u_px = 322;  // the first cell beside the other
+  weigh();
+  EXPECT_TRUE(removed(features_[10])) << "it grows as every mask";
+}
+
 TEST_F(StaticProbabilityTest, keeps_the_best_of_the_doubtful_when_too_few_remain) {
   for (int cell = 0; cell < static_cast<int>(kImageCells); ++cell)
     objects_[0].cells.push_back(cell);  // a person everywhere

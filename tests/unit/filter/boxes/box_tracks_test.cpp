@@ -113,6 +113,53 @@ TEST_F(BoxTracksTest, do_not_accumulate_when_a_detector_is_wrong) {
   EXPECT_LE(static_cast<double>(carried) / kFrames, 2.0);
 }
 
+/// The upper half of a box has label 1, and no place another.
+vision::PersonMasks upper_half_of(const vision::Detection& box) {
+  vision::PersonMasks masks{160, 120, std::vector<std::uint8_t>(160 * 120, 0)};
+  for (int row = 0; row < 120; ++row) {
+    for (int column = 0; column < 160; ++column) {
+      const auto x_px = static_cast<float>(4 * column + 2), y_px = static_cast<float>(4 * row + 2);
+      const bool inside =
+          x_px > box.x_px && x_px < box.x_px + box.width_px && y_px > box.y_px && y_px < box.y_px + box.height_px / 2;
+      if (inside) masks.labels[static_cast<std::size_t>(row * 160 + column)] = 1;
+    }
+  }
+  return masks;
+}
+
+TEST_F(BoxTracksTest, carry_the_newest_mask_with_their_box_but_not_for_long) {
+  for (int i = 0; i <= 10; ++i) {
+    frame(i);
+    const vision::Detection seen = person(100 + 4 * i);
+    tracks_.update({stamp(i), {seen}, upper_half_of(seen)}, no_depth);
+    tracks_.boxes();
+  }
+  silence(11, 15);
+  const TrackedBox carried = tracks_.boxes().at(0);
+  const vision::Detection& now = carried.detection;
+  const Eigen::Vector2d middle_px(now.x_px + now.width_px / 2, now.y_px + now.height_px / 2);
+  EXPECT_TRUE(carried.carried);
+  EXPECT_TRUE(carried.mask.covers(middle_px - Eigen::Vector2d(0, 40), now));
+  EXPECT_FALSE(carried.mask.covers(middle_px + Eigen::Vector2d(0, 40), now));
+  silence(16, 20);
+  EXPECT_TRUE(tracks_.boxes().at(0).mask.empty()) << "after a third of a second";
+}
+
+TEST_F(BoxTracksTest, take_late_masks_but_not_older_ones) {
+  walk(0, 3, 0);
+  frame(4);
+  frame(5);
+  tracks_.update({stamp(4), {person(100)}, upper_half_of(person(100))}, no_depth);
+  EXPECT_FALSE(tracks_.boxes().at(0).mask.empty());
+  EXPECT_TRUE(tracks_.boxes().at(0).carried);
+}
+
+TEST_F(BoxTracksTest, have_no_mask_without_a_place_of_their_own) {
+  frame(0);
+  tracks_.update({stamp(0), {person(400), person(100)}, upper_half_of(person(400))}, no_depth);
+  for (const TrackedBox& box : tracks_.boxes()) EXPECT_EQ(box.mask.empty(), box.detection.x_px < 200);
+}
+
 TEST_F(BoxTracksTest, end_after_repeated_empty_batches) {
   walk(0, 10, 0);
   denial(11, 40);

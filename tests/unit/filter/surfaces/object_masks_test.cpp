@@ -27,10 +27,30 @@ std::vector<SceneObject> find(const vision::RgbdImage& image, const std::vector<
   return find_objects(boxes, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}),
                       MaskConfig{});
 }
-std::vector<std::uint8_t> mask_of(const SceneObject& object) {
+const cv::Rect kPersonPx(240, 120, 120, 280);
+
+/// The one object of that box, whose mask covers an area of the image.
+SceneObject find_masked(const vision::RgbdImage& image, const cv::Rect& mask_px, const char* class_name = "person") {
+  vision::PersonMasks masks{160, 120, std::vector<std::uint8_t>(160 * 120, 0)};
+  for (int row = mask_px.y / 4; row < (mask_px.y + mask_px.height) / 4; ++row) {
+    for (int column = mask_px.x / 4; column < (mask_px.x + mask_px.width) / 4; ++column)
+      masks.labels[static_cast<std::size_t>(row * 160 + column)] = 1;
+  }
+  ObjectBox box;
+  box.detection = {class_name, 0.9F, 200, 100, 200, 320};
+  box.mask = BoxMask(masks, 1, box.detection);
+  const DepthGrid grid = test::make_sampler().sample(image);
+  const auto found =
+      find_objects({box}, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}), MaskConfig{});
+  return found.at(0);
+}
+std::vector<std::uint8_t> mask_of(const std::vector<int>& cells) {
   std::vector<std::uint8_t> mask(160 * 120, 0);
-  for (const int cell : object.cells) mask[static_cast<std::size_t>(cell)] = 1;
+  for (const int cell : cells) mask[static_cast<std::size_t>(cell)] = 1;
   return mask;
+}
+std::vector<std::uint8_t> mask_of(const SceneObject& object) {
+  return mask_of(object.cells);
 }
 
 TEST(ObjectMasks, take_the_near_cluster_and_leave_the_background_seen_through_the_box) {
@@ -51,12 +71,80 @@ TEST(ObjectMasks, holes_near_the_object_are_its_own_within_the_box) {
   put_block(image, {204, 104, 20, 20}, 0);   // a hole that touches nothing
   const auto objects = find(image, {{"person", 0.9F, 200, 100, 200, 320}});
   ASSERT_EQ(objects.size(), 1U);
-  SceneObject holes;
-  holes.cells = objects[0].holes;
+  const std::vector<int>& holes = objects[0].holes;
   EXPECT_EQ(count_in(kShape, mask_of(holes), {240, 200, 120, 16}), cells_in({240, 200, 120, 16}));
   EXPECT_EQ(count_in(kShape, mask_of(holes), {360, 300, 8, 20}), cells_in({360, 300, 8, 20}));
   EXPECT_EQ(count_in(kShape, mask_of(holes), {368, 300, 112, 20}), 0);
   EXPECT_EQ(count_in(kShape, mask_of(holes), {204, 104, 20, 20}), 0);
+}
+
+TEST(ObjectMasks, holes_in_the_pixels_of_a_person_are_the_person_and_others_are_not) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, kPersonPx, 1.5);
+  put_block(image, {240, 200, 120, 80}, 0);  // a dark coat, wider than holes_beside() reaches
+  put_block(image, {360, 120, 40, 280}, 0);  // the infrared shadow beside the person
+  const SceneObject object = find_masked(image, kPersonPx);
+  EXPECT_EQ(count_in(kShape, mask_of(object.holes), {240, 200, 120, 80}), cells_in({240, 200, 120, 80}));
+  EXPECT_EQ(count_in(kShape, mask_of(object.holes), {368, 120, 32, 280}), 0);
+  EXPECT_EQ(count_in(kShape, mask_of(object.around), {368, 120, 32, 280}), cells_in({368, 120, 32, 280}));
+  EXPECT_EQ(count_in(kShape, mask_of(object.around), {360, 120, 4, 280}), 0) << "within a cell of the mask";
+}
+
+TEST(ObjectMasks, what_a_person_has_grown_together_with_is_cut_by_the_pixels) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {240, 120, 400, 280}, 1.5);  // the person and a cupboard, one cluster
+  const SceneObject object = find_masked(image, kPersonPx);
+  EXPECT_EQ(count_in(kShape, mask_of(object), kPersonPx), cells_in(kPersonPx));
+  EXPECT_EQ(count_in(kShape, mask_of(object), {364, 120, 36, 280}), 0);
+  EXPECT_FALSE(object.flat);
+}
+
+TEST(ObjectMasks, a_cluster_that_lies_in_the_box_is_the_object_whatever_the_network_missed) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, kPersonPx, 1.5);
+  const SceneObject object = find_masked(image, {240, 120, 120, 160});  // without the legs
+  EXPECT_EQ(object.cells.size(), static_cast<std::size_t>(cells_in(kPersonPx)));
+  EXPECT_EQ(count_in(kShape, mask_of(object.around), kPersonPx), 0);
+}
+
+TEST(ObjectMasks, the_pixels_choose_between_two_surfaces_in_a_box) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, {200, 300, 200, 120}, 1.0);  // a chair in front of the person
+  put_block(image, {240, 120, 120, 180}, 1.8);
+  const SceneObject object = find_masked(image, {240, 120, 120, 180});
+  EXPECT_EQ(count_in(kShape, mask_of(object), {240, 120, 120, 180}), cells_in({240, 120, 120, 180}));
+  EXPECT_EQ(count_in(kShape, mask_of(object), {200, 304, 200, 116}), 0);
+}
+
+TEST(ObjectMasks, the_pixels_cut_a_box_in_which_nothing_was_measured) {
+  vision::RgbdImage image = wall_image(3.0);
+  image.depth.setTo(0);
+  const SceneObject object = find_masked(image, kPersonPx);
+  EXPECT_EQ(count_in(kShape, mask_of(object), kPersonPx), cells_in(kPersonPx));
+  EXPECT_EQ(count_in(kShape, mask_of(object), {364, 100, 36, 320}), 0);
+}
+
+TEST(ObjectMasks, pixels_count_for_people_only) {
+  vision::RgbdImage image = wall_image(3.0);
+  put_block(image, kPersonPx, 1.5);
+  const SceneObject chair = find_masked(image, {240, 120, 60, 280}, "chair");
+  EXPECT_EQ(chair.cells.size(), static_cast<std::size_t>(cells_in(kPersonPx)));
+  EXPECT_TRUE(chair.around.empty());
+}
+
+TEST(ObjectMasks, pixels_lie_where_the_lens_shows_them) {
+  vision::RgbdImage image = wall_image(3.0);
+  auto parameters = image.camera.parameters();
+  parameters.distortion = {0.26, -0.95, -0.005, 0.003, 1.16};  // fr1
+  image.camera = geometry::CameraModel(parameters);
+  put_block(image, kPersonPx, 1.5);
+  const SceneObject object = find_masked(image, kPersonPx);
+  for (const int cell : object.cells) {
+    const Eigen::Vector2d raw_px = image.camera.distort({4 * (cell % 160) + 1.5, 4 * (cell / 160) + 1.5});
+    EXPECT_GE(raw_px.x(), kPersonPx.x - 8);
+    EXPECT_LE(raw_px.x(), kPersonPx.x + kPersonPx.width + 8);
+  }
+  EXPECT_GE(object.cells.size() + object.holes.size(), 0.9 * cells_in(kPersonPx));
 }
 
 TEST(ObjectMasks, include_what_the_box_cut_off) {
