@@ -23,7 +23,8 @@ class DepthFigures {
   double hole_share() const;
 
   /// Why the unit is doubtful and which one is likely; empty when it is not: nearly all is nearer than 0.5 m, or
-  /// farther than 13 m. `given`: a file or parameter gave the unit; otherwise it is enough that another one is more likely.
+  /// farther than 13 m. `given`: a file or parameter gave the unit; otherwise it is enough that another one is more
+  /// likely.
   std::string doubt(bool given) const;
 
  private:

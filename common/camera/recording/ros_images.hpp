@@ -45,8 +45,8 @@ double depth_unit_m(const RecordedMessage& message, double float_unit_m);
 /// Whether such a message holds floats. Throws as above.
 bool has_float_depth(const RecordedMessage& message);
 
-/// What to give decode_depth() as float_unit_m for units of so many metres: the same, but a thousand times as much where
-/// the message's floats are millimetres, although ROS has metres in floats. Throws as above.
+/// What to give decode_depth() as float_unit_m for units of so many metres: the same, but a thousand times as much
+/// where the message's floats are millimetres, although ROS has metres in floats. Throws as above.
 double float_step(const RecordedMessage& message, double float_unit_m);
 
 inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md

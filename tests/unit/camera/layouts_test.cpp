@@ -454,7 +454,8 @@ TEST_F(FieldData, stamps_that_are_durations_need_a_rate) {
 
 TEST_F(FieldData, groundtruth_with_a_title_and_nan_does_not_stop_the_frames) {
   const auto source = make_source(at("groundtruth_with_title_and_nan"));
-  EXPECT_THAT(notes_of(*source), HasSubstr("rows left out"));
+  EXPECT_THAT(source->info().remarks,
+              testing::ElementsAre(HasSubstr("title line without '#' left out"), HasSubstr("of nan left out")));
   EXPECT_FALSE(source->groundtruth().empty());
 }
 
