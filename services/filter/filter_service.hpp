@@ -15,6 +15,7 @@
 #include "common/bus/commands.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/inertial/motion_feed.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/log.hpp"
@@ -75,6 +76,7 @@ class FilterService {
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
   void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
+  void take_imu(std::int64_t stamp_ns);
   DetectorUpdate collect_detections(const msg::FrameView& frame);
   void wait_for_detections(const msg::FrameView& frame);
   msg::DetectionUse use_of(const DetectorUpdate& detector, const FilterResult& result, std::int64_t stamp_ns) const;
@@ -92,6 +94,7 @@ class FilterService {
   LoadWatch load_;
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
+  std::optional<inertial::MotionFeed> imu_;
   bus::Writer<msg::FeatureFrame> writer_;
   bus::Writer<msg::Image> mask_writer_;
   const std::shared_ptr<bus::SourceGate> camera_, detector_, slam_;

@@ -20,7 +20,7 @@ MotionPrior::MotionPrior(const SlamConfig& config)
       T_imu_base_(T_imu_camera_ * config.prior.T_base_camera.inverse()),
       wheels_(config.wheel) {}
 
-void MotionPrior::add(ImuSample sample) {
+void MotionPrior::add(inertial::ImuSample sample) {
   sample.stamp_ns = msg::plus_ns(sample.stamp_ns, msg::ns_of(config_.imu.time_offset_s));
   imu_.add(sample);
 }
@@ -53,7 +53,7 @@ void MotionPrior::advance_filter(std::int64_t stamp_ns) {
 }
 
 /// The distance that the base covers gives the velocity; turns are better known by the gyroscope.
-void MotionPrior::use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+void MotionPrior::use_wheels(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
                              std::int64_t from_ns) {
   const auto way = wheels_.motion(from_ns, now_ns_);
   if (!way) return;
@@ -137,7 +137,7 @@ void MotionPrior::restart() {
 }
 
 std::optional<Eigen::Vector3d> MotionPrior::up_in_camera() const {
-  if (const auto up_imu = up_at_rest(imu_, kRest_s)) return config_.prior.T_camera_imu.linear() * *up_imu;
+  if (const auto up_imu = inertial::up_at_rest(imu_, kRest_s)) return config_.prior.T_camera_imu.linear() * *up_imu;
   if (!filter_ || !filter_->ready()) return std::nullopt;
   const InertialState& state = filter_->state();
   const Eigen::Vector3d up_imu = -(state.T_world_imu.linear().transpose() * state.gravity_m_s2).normalized();

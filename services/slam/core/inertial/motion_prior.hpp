@@ -15,7 +15,7 @@ class MotionPrior {
  public:
   explicit MotionPrior(const SlamConfig& config);
 
-  void add(ImuSample sample);
+  void add(inertial::ImuSample sample);
   void add(const WheelSample& sample) { wheels_.add(sample); }
   /// Whether everything up to this stamp has come.
   bool reaches(std::int64_t stamp_ns) const;
@@ -40,19 +40,20 @@ class MotionPrior {
   /// filter has learned; empty before either. Eq. (13).
   std::optional<Eigen::Vector3d> up_in_camera() const;
   const std::optional<InertialFilter>& filter() const { return filter_; }
-  const ImuCounters& imu_counters() const { return imu_.counters(); }
+  const inertial::ImuCounters& imu_counters() const { return imu_.counters(); }
   const WheelCounters& wheel_counters() const { return wheels_.counters(); }
 
  private:
   void advance_filter(std::int64_t stamp_ns);
-  void use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before, std::int64_t from_ns);
+  void use_wheels(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+                  std::int64_t from_ns);
   std::optional<PredictedPose> by_wheels() const;
   std::optional<PredictedPose> expected() const;
   void begin_filter(const PredictedPose& measured);
 
   SlamConfig config_;
   Eigen::Isometry3d T_imu_camera_, T_imu_base_;
-  ImuStream imu_;
+  inertial::ImuStream imu_;
   WheelStream wheels_;
   std::optional<InertialFilter> filter_;
   std::optional<PredictedPose> last_;  ///< measured, at last_ns_: where the wheels continue from

@@ -33,7 +33,7 @@ void Tracker::weigh_against_prior(PoseGuess& guess) {
 /// Whether IMU or wheels still know the pose well enough to claim it. docs/theory/inertial.md, "Predicted poses".
 bool Tracker::follows_prior(const Frame& frame) const {
   if (!expected_ || !config_.techniques.prediction || !msg::has_pose(state_)) return false;
-  const double gap_s = seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
+  const double gap_s = inertial::seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
   const Eigen::Matrix3d position = expected_->covariance.topLeftCorner<3, 3>();
   return gap_s > 0 && gap_s <= config_.prior.max_hold_s &&
          geometry::largest_sigma(position) <= config_.prior.max_sigma_m;
