@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/geometry/se3.hpp"
 #include "common/msg/stamps.hpp"
 #include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
@@ -73,6 +74,15 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
     matches = match_by_projection(previous, input.current, T_world_camera, 3 * window_px(previous), config);
   }
   return matches;
+}
+
+/// Whether two views are turned against each other as the gyroscope says. If not, a pose of slam was wrong in between.
+bool turned_alike(const KnownRotation& by_one, const KnownRotation& by_other) {
+  constexpr double kSigmas = 3;
+  if (!by_one || !by_other) return true;
+  const double variance = (by_one->covariance + by_other->covariance).trace() / 3;
+  const Eigen::Vector3d off_rad = geometry::so3_log(by_one->R_world_camera.transpose() * by_other->R_world_camera);
+  return off_rad.squaredNorm() < kSigmas * kSigmas * variance;
 }
 
 std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {
@@ -188,8 +198,10 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera,
                                                kRefineWindowRad * camera.parameters().fx, config);
   std::vector<PointSighting> sightings = to_sightings(usable(near_matches, input, moves, limit / 2), input);
-  const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
-  sightings.insert(sightings.end(), more.begin(), more.end());
+  if (turned_alike(rotation, rotation_since(old, input))) {
+    const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
+    sightings.insert(sightings.end(), more.begin(), more.end());
+  }
   const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers, rotation);
   if (!refined.success) return ego;
   ego.reliable = true;

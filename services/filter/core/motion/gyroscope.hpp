@@ -6,17 +6,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/inertial/preintegration.hpp"
+#include "common/inertial/camera_turn.hpp"
 #include "services/filter/core/motion/motion_config.hpp"
 
 namespace rtd::filter {
-
-/// How the camera has turned between two moments: a vector in the axes of the later one becomes one in those of the
-/// earlier. The covariance is of a small turn in the axes of the later moment, rad^2.
-struct CameraTurn {
-  Eigen::Matrix3d R_earlier_later = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
-};
 
 /// Turns of the camera from the samples of an IMU. docs/theory/dynamic_points.md section 2. Not thread-safe.
 class Gyroscope {
@@ -25,7 +18,7 @@ class Gyroscope {
 
   void add(inertial::ImuSample sample);
   /// Empty when the samples do not cover the span.
-  std::optional<CameraTurn> turn(std::int64_t from_ns, std::int64_t to_ns) const;
+  std::optional<inertial::CameraTurn> turn(std::int64_t from_ns, std::int64_t to_ns) const;
   /// Everything older than any view is forgotten.
   void forget_before(std::int64_t stamp_ns) { samples_.forget_before(stamp_ns); }
   void clear() { samples_.clear(); }

@@ -104,6 +104,10 @@ Eigen::Matrix<double, 6, 18> InertialFilter::camera_jacobian() const {
   return H;
 }
 
+Eigen::Matrix3d InertialFilter::gyro_bias_covariance() const {
+  return P_.block<3, 3>(kGyroBias, kGyroBias);
+}
+
 PredictedPose InertialFilter::camera() const {
   const Eigen::Matrix<double, 6, 18> H = camera_jacobian();
   return {state_.T_world_imu * T_imu_camera_, H * P_ * H.transpose()};

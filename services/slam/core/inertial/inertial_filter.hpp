@@ -51,6 +51,7 @@ class InertialFilter {
   const InertialState& state() const { return state_; }
   const inertial::ImuBias& bias() const { return state_.bias; }
   const Matrix18d& covariance() const { return P_; }
+  Eigen::Matrix3d gyro_bias_covariance() const;
   /// The pose of this frame is predicted: what is measured during the next second corrects it. Eq. (14).
   void remember(std::uint64_t seq);
   /// What was found out since the last call.

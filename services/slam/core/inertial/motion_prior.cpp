@@ -40,6 +40,20 @@ std::optional<PredictedPose> MotionPrior::advance(std::int64_t stamp_ns) {
   return expected();
 }
 
+/// With the bias as far as it is known. Before the filter is ready it has hardly seen a turn.
+std::optional<inertial::CameraTurn> MotionPrior::turn_since(std::int64_t from_ns) const {
+  constexpr double kScaleError = 0.01;
+  if (!config_.prior.imu) return std::nullopt;
+  const bool known = filter_ && filter_->ready();
+  const auto motion = imu_.integrate(from_ns, now_ns_, known ? filter_->bias() : inertial::ImuBias{},
+                                     {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
+  if (!motion) return std::nullopt;
+  const Eigen::Matrix3d bias =
+      known ? filter_->gyro_bias_covariance()
+            : Eigen::Matrix3d(std::pow(config_.imu.gyro_bias_rad_s, 2) * Eigen::Matrix3d::Identity());
+  return inertial::turn_of_camera(*motion, config_.prior.T_camera_imu.linear(), {bias, kScaleError});
+}
+
 void MotionPrior::advance_filter(std::int64_t stamp_ns) {
   const auto motion =
       imu_.integrate(before_ns_, stamp_ns, filter_->bias(), {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
@@ -107,6 +121,11 @@ void MotionPrior::relocate(const PredictedPose& measured) {
   last_ = measured;
   last_ns_ = now_ns_;
   filter_ ? filter_->relocate(measured) : begin_filter(measured);
+}
+
+void MotionPrior::begin_again(const PredictedPose& measured) {
+  if (filter_) filter_->predict_blind(0);
+  relocate(measured);
 }
 
 void MotionPrior::remember(std::uint64_t seq) {

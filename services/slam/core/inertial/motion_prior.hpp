@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "common/inertial/camera_turn.hpp"
 #include "services/slam/core/inertial/inertial_filter.hpp"
 #include "services/slam/core/inertial/wheel_stream.hpp"
 
@@ -22,10 +23,14 @@ class MotionPrior {
 
   /// The frame in work. Its expected pose, once IMU or wheels can say one; the covariance is relative to the map.
   std::optional<PredictedPose> advance(std::int64_t stamp_ns);
+  /// How the camera has turned from then to the frame in work, by the gyroscope; empty without one.
+  std::optional<inertial::CameraTurn> turn_since(std::int64_t from_ns) const;
   /// Its pose by the map, covariance relative to the map. The expected pose with it.
   std::optional<PredictedPose> correct(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
+  /// The velocity was wrong: it is learnt again from here on.
+  void begin_again(const PredictedPose& measured);
   /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.
   void remember(std::uint64_t seq);
   std::vector<PoseCorrection> take_corrections();
