@@ -4,6 +4,7 @@
 
 #include <ceres/tiny_solver.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
@@ -24,8 +25,13 @@ double chi2_limit(const PoseOptimizerOptions& options, const PoseObservation& ob
   return observation.measured.has_depth() ? options.max_chi2_rgbd : options.max_chi2_pixel;
 }
 
+/// What makes white noise of an error of the rotation.
+Eigen::Matrix3d root_information(const RotationPrior& rotation) {
+  return rotation.covariance.llt().matrixL().solve(Eigen::Matrix3d::Identity());
+}
+
 /// The cost function that TinySolver sees: 6 parameters [rho; phi] around T_camera_world, three residuals per active
-/// observation.
+/// observation, and three of a known rotation.
 class PoseCost {
  public:
   using Scalar = double;
@@ -39,7 +45,7 @@ class PoseCost {
   void add(const PoseObservation& observation) { active_.push_back(&observation); }
   std::size_t size() const { return active_.size(); }
   int NumResiduals() const {  // NOLINT(readability-identifier-naming): the name that TinySolver asks for
-    return static_cast<int>(3 * active_.size());
+    return static_cast<int>(3 * (active_.size() + (options_.rotation ? 1 : 0)));
   }
 
   bool operator()(const double* parameters, double* residuals, double* jacobian) const {
@@ -65,6 +71,15 @@ class PoseCost {
       if (jacobian != nullptr) {
         J.middleRows<3>(row) = scaling.jacobian / observation.sigma_px *
                                pose_jacobian(camera_, p_rotated, p_camera, left_jacobian, observation.measured);
+      }
+    }
+    if (options_.rotation) {
+      const Eigen::Matrix3d root = root_information(*options_.rotation);
+      const Eigen::Vector3d off_rad = geometry::so3_log(R * options_.rotation->R_world_camera);
+      r.tail<3>() = root * off_rad;
+      if (jacobian != nullptr) {
+        J.bottomLeftCorner<3, 3>().setZero();
+        J.bottomRightCorner<3, 3>() = root * geometry::so3_left_jacobian(off_rad).inverse() * left_jacobian;
       }
     }
     return true;
@@ -138,6 +153,7 @@ void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& 
 struct Information {
   Matrix6d pixels = Matrix6d::Zero(), depths = Matrix6d::Zero();  ///< Gauss-Newton Hessians, weights not squared
   Matrix6d pixels_squared = Matrix6d::Zero(), depths_squared = Matrix6d::Zero();  ///< weights squared
+  Matrix6d rotation = Matrix6d::Zero();                                           ///< of a RotationPrior
   double pixel_chi2 = 0, depth_chi2 = 0, pixel_residuals = 0, depth_residuals = 0;
 };
 
@@ -168,6 +184,11 @@ Information gather(const RgbdProjection& camera, const std::vector<PoseObservati
   return sum;
 }
 
+/// Adds what a known rotation says, whose covariance is right.
+void add_rotation(const RotationPrior& rotation, Information& sum) {
+  sum.rotation.bottomRightCorner<3, 3>() = rotation.covariance.inverse();
+}
+
 /// Variance of whitened residuals, as found. Few of them are uncertain: the assumed 1 counts as this many more.
 double found_variance(double chi2, double residuals) {
   constexpr double kAssumed = 12.0;
@@ -190,7 +211,7 @@ bool world_covariance(const Information& information, const Eigen::Isometry3d& T
   // Metres and radians are of like size here; a direction known ten million times worse than the best is not known.
   constexpr double kMinConditionInverse = 1e-14;
   constexpr double kPixelLimit = 7.0;  // between the limits of inliers with and without depth
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information.pixels + information.depths);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information.pixels + information.depths + information.rotation);
   const Vector6d& values = eigen.eigenvalues();
   if (!(values.maxCoeff() > 0) || values.minCoeff() < kMinConditionInverse * values.maxCoeff()) return false;
   const Matrix6d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
@@ -201,7 +222,8 @@ bool world_covariance(const Information& information, const Eigen::Isometry3d& T
   A.bottomRightCorner<3, 3>() = -R_world_camera;
   const Matrix6d M = untruncated(found_variance(information.pixel_chi2, information.pixel_residuals), kPixelLimit) *
                          information.pixels_squared +
-                     found_variance(information.depth_chi2, information.depth_residuals) * information.depths_squared;
+                     found_variance(information.depth_chi2, information.depth_residuals) * information.depths_squared +
+                     information.rotation;
   covariance = A * inverse * M * inverse * A.transpose();
   return true;
 }
@@ -248,9 +270,10 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
 
   T_camera_world = geometry::normalized(T_camera_world);
   result.T_world_camera = T_camera_world.inverse();
+  Information information = gather(camera, observations, result.inlier, T_camera_world);
+  if (options.rotation) add_rotation(*options.rotation, information);
   result.success =
-      result.inliers >= options.min_inliers &&
-      world_covariance(gather(camera, observations, result.inlier, T_camera_world), T_camera_world, result.covariance);
+      result.inliers >= options.min_inliers && world_covariance(information, T_camera_world, result.covariance);
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/se3.hpp"
@@ -24,14 +25,21 @@ enum class RobustKernel : std::uint8_t {
   kAdaptive,  ///< from the second round on, scale and shape fitted to its residuals: general_loss.hpp
 };
 
+/// How the camera is turned, as something else than its image knows it.
+struct RotationPrior {
+  Eigen::Matrix3d R_world_camera = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of a small turn in the camera's axes, rad^2; regular
+};
+
 struct PoseOptimizerOptions {
   RobustKernel kernel = RobustKernel::kHuber;
   int rounds = 4;           ///< optimise, then sort inliers from outliers
   int robust_rounds = 2;    ///< rounds with the Huber loss; the later ones trust the inliers (adaptive: none does)
   int max_iterations = 10;  ///< of each round
-  double max_chi2_pixel = 5.991;  ///< 95 % of chi2 with 2 degrees of freedom: observations without depth
-  double max_chi2_rgbd = 7.815;   ///< 3 degrees of freedom: observations with depth
-  int min_inliers = 6;            ///< fewer end the optimisation as failed
+  double max_chi2_pixel = 5.991;          ///< 95 % of chi2 with 2 degrees of freedom: observations without depth
+  double max_chi2_rgbd = 7.815;           ///< 3 degrees of freedom: observations with depth
+  int min_inliers = 6;                    ///< fewer end the optimisation as failed
+  std::optional<RotationPrior> rotation;  ///< one more residual: docs/theory/tracking.md Eq. (19)
 };
 
 struct PoseOptimizerResult {

@@ -3,6 +3,7 @@
 #include "services/filter/config.hpp"
 
 #include "common/msg/filter_modes.hpp"
+#include "common/service/mount.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/vision/motion_levels.hpp"
 
@@ -19,12 +20,19 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
                "lockstep: longest wait for a living slam's result of the previous frame");
   binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
   binder.field("map_frame", map_frame, "frame of rt/filter/movers: as slam.map_frame");
+  binder.field("imu.topic", imu,
+               "topic of an IMU beside the camera, sensor_msgs/Imu: its gyroscope says how the camera turns; rtd run "
+               "sets it by --imu; empty: none");
+  binder.field("imu.mount", imu_mount, "as slam.imu.mount: how the IMU is turned in the camera's optical frame");
   core.bind(binder);
 }
 
 FilterConfig ServiceConfig::core_config() const {
   FilterConfig config = core;
   if (const auto* const known = msg::find_filter_mode(mode)) config.mode = known->mode;
+  if (!imu.empty() && (imu.size() < 2 || !imu.starts_with('/')))
+    throw service::ConfigError("filter.imu.topic=" + imu + ": a ROS topic begins with a slash, e.g. /" + imu);
+  if (!imu_mount.empty()) config.gyroscope.R_camera_imu = service::parse_mount(imu_mount, "filter.imu.mount").linear();
   try {
     const vision::MotionLevels check(config.motion_levels);
   } catch (const std::invalid_argument& error) {

@@ -22,9 +22,11 @@ struct ServiceConfig {
   int feedback_timeout_ms = service::kEveryFramePatience.answer_ms;
   bool shed_load = true;
   std::string map_frame = "map";
+  std::string imu, imu_mount;  ///< topic, ROS name; empty: none
 
   void bind(service::ConfigBinder& binder);
-  /// `core` with the mode as its enum. Throws service::ConfigError for an unknown motion level.
+  /// `core` with the mode as its enum. and the IMU as it is mounted. Throws service::ConfigError for an unknown motion
+  /// level and a mount that cannot be read.
   FilterConfig core_config() const;
 };
 

@@ -62,6 +62,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
     detector_alive_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
     detector_masks_ = std::ranges::count(status.metrics, service::metric::kMasks, &msg::Metric::name) > 0;
   });
+  if (!config_.imu.empty()) imu_.emplace(runtime.bus_options, inertial::MotionFeedTopics{config_.imu, "", "filter"});
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
   mask_writer_ = runtime.bus.writer(bus::topics::kDynamicMask);
   tracking_reader_ = runtime.bus.reader<msg::TrackingResult>(
@@ -150,6 +151,7 @@ void FilterService::process(Work work) {
   const std::int64_t waiting_since_ns = service::monotonic_ns();
   const DetectorUpdate detector = collect_detections(frame);
   apply_slam_feedback();
+  if (imu_) take_imu(frame.stamp_ns);
   const std::int64_t judging_since_ns = service::monotonic_ns(), waited_ns = judging_since_ns - waiting_since_ns;
 
   FilterResult result = filter_.judge(image, std::move(extraction), detector);
@@ -259,6 +261,13 @@ std::int64_t FilterService::wait_for_slam(std::uint64_t seq) {
     if (answered || gone) break;
   }
   return waited_ns;
+}
+
+/// In realtime the filter goes by what has come; else the same samples belong to a frame, as far as they come in time.
+void FilterService::take_imu(std::int64_t stamp_ns) {
+  constexpr std::chrono::milliseconds kMax{250};
+  if (runtime_.pace != service::Pace::kRealtime) imu_->await(stamp_ns, kMax);
+  for (const inertial::ImuSample& sample : imu_->take_imu()) filter_.add(sample);
 }
 
 /// Most frames of the first second would be lost until step after step is shed.
@@ -392,6 +401,9 @@ void FilterService::report_state() {
     return;
   }
   std::vector<std::string> remarks;
+  if (imu_) {
+    if (std::string silent = imu_->trouble(); !silent.empty()) remarks.push_back(std::move(silent));
+  }
   if (detector_gone_) remarks.emplace_back("detector gone: geometry only");
   if (load_.step() > 0)
     remarks.push_back(

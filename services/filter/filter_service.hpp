@@ -15,6 +15,7 @@
 #include "common/bus/commands.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/inertial/motion_feed.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/log.hpp"
@@ -76,6 +77,7 @@ class FilterService {
   void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
   std::int64_t wait_for_slam(std::uint64_t seq);
+  void take_imu(std::int64_t stamp_ns);
   DetectorUpdate collect_detections(const msg::FrameView& frame);
   void wait_for_detections(const msg::FrameView& frame);
   /// By the detector's heartbeat, or because a program writes them: the heartbeat of a replay does not say it.
@@ -96,6 +98,7 @@ class FilterService {
   LoadWatch load_;
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
+  std::optional<inertial::MotionFeed> imu_;
   bus::Writer<msg::FeatureFrame> writer_;
   bus::Writer<msg::Image> mask_writer_;
   const std::shared_ptr<bus::SourceGate> camera_, detector_, slam_;

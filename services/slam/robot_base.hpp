@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/msg/ros.hpp"
+#include "common/service/mount.hpp"
 
 namespace rtd::slam {
 
@@ -18,9 +19,7 @@ struct RobotBase {
 
 /// Of a camera that looks horizontally, in axes of its own with x forward and z up.
 Eigen::Isometry3d level_camera();
-/// "x,y,z,qx,qy,qz,qw" (m, Hamilton, made of unit length) as a transform. Throws service::ConfigError that names the
-/// key.
-Eigen::Isometry3d parse_mount(const std::string& text, const std::string& key = "slam.base.camera");
+using service::parse_mount;
 
 /// A pose of the camera becomes that of the base.
 void move_to_base(msg::PoseStamped& pose, const RobotBase& base);

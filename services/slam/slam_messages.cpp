@@ -37,6 +37,18 @@ std::string text(double value) {
 
 }  // namespace
 
+WheelSample to_sample(const msg::Odometry& odometry) {
+  constexpr std::size_t kForward = 0, kTurning = 35;  // places of the variances
+  const auto& [p, q] = odometry.pose.pose;
+  WheelSample sample;
+  sample.stamp_ns = msg::to_ns(odometry.header.stamp);
+  sample.T_odom_base.translation() << p.x, p.y, p.z;
+  sample.T_odom_base.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
+  sample.speed_variance = odometry.twist.covariance[kForward];
+  sample.turning_variance = odometry.twist.covariance[kTurning];
+  return sample;
+}
+
 msg::TrackingResult make_result(const FrameResult& result) {
   msg::TrackingResult message{};
   message.seq = result.seq;

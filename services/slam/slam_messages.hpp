@@ -20,6 +20,9 @@ struct FrameNames {
   std::string map, odom, camera;
 };
 
+/// What the driver of the wheels says, as the core takes it.
+WheelSample to_sample(const msg::Odometry& odometry);
+
 /// The result for our own services; the caller fills in published_ns and finished_ns. Without a pose, or where it is
 /// not known, the covariance is huge.
 msg::TrackingResult make_result(const FrameResult& result);

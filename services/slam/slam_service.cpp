@@ -54,7 +54,9 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
       filter_(service::follow_source("filter", runtime)),
       map_keeper_(config_.map, slam_) {
-  if (config_.motion.given()) motion_.emplace(runtime.bus_options, config_.motion.imu, config_.motion.wheels);
+  if (config_.motion.given()) {
+    motion_.emplace(runtime.bus_options, inertial::MotionFeedTopics{config_.motion.imu, config_.motion.wheels, "slam"});
+  }
   load_map();
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
@@ -170,7 +172,8 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
 void SlamService::take_motion(const msg::FeatureFrame& frame) {
   constexpr std::chrono::milliseconds kMax{250};
   if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns, kMax);
-  motion_->drain(slam_);
+  for (const inertial::ImuSample& sample : motion_->take_imu()) slam_.add(sample);
+  for (const msg::Odometry& odometry : motion_->take_wheels()) slam_.add(to_sample(odometry));
 }
 
 void SlamService::count_motion() {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/inertial/motion_feed.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
@@ -17,7 +18,6 @@
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/map_publisher.hpp"
-#include "services/slam/motion_feed.hpp"
 #include "services/slam/slam_commands.hpp"
 #include "services/slam/slam_publisher.hpp"
 
@@ -68,7 +68,7 @@ class SlamService {
   std::string refused_map_;  ///< why the map taken by command was given up, until the next one or a reset
   SlamPublisher publisher_;
   MapPublisher map_publisher_;
-  std::optional<MotionFeed> motion_;  ///< IMU and wheels
+  std::optional<inertial::MotionFeed> motion_;  ///< IMU and wheels
   std::shared_ptr<Arrivals> arrivals_;
   const std::shared_ptr<bus::SourceGate> filter_;
   bus::Reader<msg::FeatureFrame> features_;

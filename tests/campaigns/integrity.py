@@ -119,6 +119,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--starts", type=mover_set.numbers, default="0,15,30,45", help="first frames")
     parser.add_argument("--mode", default="rtd", help="of the filter")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
+    mover_set.add_imu(parser)
     parser.add_argument("--program", type=pathlib.Path, default=stress.PROGRAM)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--dry-run", action="store_true", help="print the commands and run nothing")
@@ -132,7 +133,7 @@ def cases(options, folders: list) -> list:
     tasks = []
     for start, folder in itertools.product(options.starts, folders):
         for fault in (PLAIN, next(turns)):
-            names = {"sequence": folder.name, "start": start, "fault": fault, "settings": " ".join(options.set),
+            names = {"sequence": folder.name, "start": start, "fault": fault, "settings": mover_set.settings_of(options),
                      "mode": options.mode}
             tasks.append((names, mover_set.command(options, folder, options.mode, start) + FAULTS.get(fault, [])))
     return tasks

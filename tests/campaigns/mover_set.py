@@ -4,7 +4,8 @@
 """Runs a set of rendered sequences with people and carried things, each from several first frames.
 
 Usage: tests/campaigns/mover_set.py --cache FOLDER [--renderer PROGRAM] [--kinds half,mix] [--seeds 1-5]
-                                    [--starts 0,20,45] [--modes rtd,geometry,semantic] [--set KEY=VALUE] [--jobs N]
+                                    [--starts 0,20,45] [--modes rtd,geometry,semantic] [--set KEY=VALUE] [--imu SEED]
+                                    [--jobs N]
 
 A sequence is a folder KIND_SEED in FOLDER: TUM's layout with true masks in mask/. One that is missing is rendered by
 `PROGRAM OUT KIND SEED FRAMES`. Choose settings on the odd seeds and judge them on the even ones.
@@ -58,7 +59,18 @@ def command(options, folder: pathlib.Path, mode: str, start: int) -> list:
         task += ["--detector", "real", "--detections", str(options.cache / (folder.name + ".detections"))]
     for setting in options.set:
         task += ["--set", setting]
+    if options.imu is not None:
+        task += ["--imu-of-truth", str(options.imu)]
     return task
+
+
+def add_imu(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--imu", type=int, metavar="SEED",
+                        help="with an IMU made of the ground truth, its noise and biases by this seed")
+
+
+def settings_of(options) -> str:
+    return " ".join(options.set + ([f"imu={options.imu}"] if options.imu is not None else []))
 
 
 def failed(result: dict, truth: dict) -> bool:
@@ -91,6 +103,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--starts", type=numbers, default="0,20,45", help="first frames")
     parser.add_argument("--modes", default="rtd,geometry,semantic")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
+    add_imu(parser)
     parser.add_argument("--program", type=pathlib.Path, default=stress.PROGRAM)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=pathlib.Path, default=stress.ROOT / "build/movers")
@@ -100,7 +113,7 @@ def parse() -> argparse.Namespace:
 def run_all(options, cases: list) -> list:
     """The results of (folder, mode, start), as they are on record or by new runs."""
     log = options.out / "movers.jsonl"
-    build = stress.build_of(options.program) + " ".join(options.set)
+    build = stress.build_of(options.program) + settings_of(options)
     known = {}
     if log.exists():
         for result in map(json.loads, log.read_text().splitlines()):

@@ -69,6 +69,9 @@ class Filtered final : public FrontEnd {
     detector_ms_ = 0;
     const filter::DetectorUpdate update = detector_ ? detector_->advance_to(frame) : filter::DetectorUpdate{};
     if (detector_ms_ > 0) output.stage_ms["detector"] = detector_ms_;
+    for (const camera::ImuReading& reading : frame.imu) {
+      filter_.add({reading.stamp_ns, reading.gyro_rad_s, reading.accel_m_s2});
+    }
     filter::FilterResult result = filter_.apply(frame.image, update);
     static constexpr std::array<const char*, 7> kNames{"filter.wait",       "filter.extract", "filter.masks",
                                                        "filter.ego_motion", "filter.check",   "filter.fuse",

@@ -111,7 +111,7 @@ ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groun
 /// The input of slam before the frame.
 void add_motion(slam::SlamSystem& slam, const camera::SourceFrame& frame) {
   for (const camera::ImuReading& reading : frame.imu) {
-    slam.add(slam::ImuSample{reading.stamp_ns, reading.gyro_rad_s, reading.accel_m_s2});
+    slam.add(inertial::ImuSample{reading.stamp_ns, reading.gyro_rad_s, reading.accel_m_s2});
   }
   for (const camera::WheelReading& reading : frame.wheels) {
     slam.add(slam::WheelSample{reading.stamp_ns, reading.T_odom_base});
@@ -119,8 +119,8 @@ void add_motion(slam::SlamSystem& slam, const camera::SourceFrame& frame) {
 }
 
 /// With IMU and wheels where the source has them.
-slam::SlamConfig with_priors(slam::SlamConfig config, const camera::SourceInfo& info) {
-  config.prior.imu = info.has_imu;
+slam::SlamConfig with_priors(slam::SlamConfig config, const camera::SourceInfo& info, bool imu) {
+  config.prior.imu = imu;
   config.prior.wheels = info.has_wheels;
   if (info.has_wheels) config.prior.T_base_camera = info.T_base_camera;
   return config;
@@ -146,7 +146,10 @@ std::unique_ptr<msg::FeatureFrame> make_feature_frame(const vision::RgbdImage& i
 OfflineReport run_offline(const OfflineOptions& options) {
   const auto source = camera::make_source(options.source);
   const auto front_end = make_front_end(options.front_end);
-  slam::SlamSystem slam(with_priors(options.slam, source->info()), options.mapping, options.now_ns);
+  std::optional<ImuOfTruth> imu;
+  if (options.imu_of_truth) imu.emplace(source->groundtruth(), *options.imu_of_truth, options.imu_seed);
+  const bool has_imu = source->info().has_imu || (imu && options.imu_for_slam);
+  slam::SlamSystem slam(with_priors(options.slam, source->info(), has_imu), options.mapping, options.now_ns);
   if (options.on_start) options.on_start(slam);
   OfflineReport report;
   std::vector<slam::FrameResult> results;
@@ -160,6 +163,7 @@ OfflineReport run_offline(const OfflineOptions& options) {
   while (options.max_frames == 0 || report.frames < options.max_frames) {
     auto frame = source->next();
     if (!frame) break;
+    if (imu) frame->imu = imu->until(frame->image.stamp_ns);
     image_faults.apply(*frame);
     const FrontEndOutput front = front_end->process(*frame);
     if (options.on_features) options.on_features(*frame, front.features);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "services/filter/core/dynamic_filter.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/image_faults.hpp"
+#include "tests/support/imu_of_truth.hpp"
 #include "tests/support/simulated_detector.hpp"
 
 namespace rtd::test_support {
@@ -55,6 +57,10 @@ std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options);
 struct OfflineOptions {
   std::string source;  ///< URI, e.g. "tum:/data/walk_xyz?masks=1"
   FrontEndOptions front_end;
+  /// An IMU made of the source's ground truth, for sources without one. For filter and slam, or the filter alone.
+  std::optional<ImuOfTruth::Options> imu_of_truth;
+  std::uint64_t imu_seed = 1;
+  bool imu_for_slam = true;
   std::size_t first_frame = 0;  ///< so many frames of the source are passed over
   std::size_t frame_step = 1;   ///< only one of so many frames is used, as from a slower camera
   std::size_t max_frames = 0;   ///< 0 = all

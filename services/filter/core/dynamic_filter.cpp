@@ -7,9 +7,15 @@
 #include <numeric>
 #include <utility>
 
+#include "common/msg/stamps.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 
 namespace rtd::filter {
+namespace {
+
+constexpr std::int64_t kTurnsNs = 4'000'000'000;  // older than any view that a frame is compared with
+
+}  // namespace
 
 /// What all modes share: surfaces, objects, the verdict of the mode. That of our own modes is RtdJudge::judge(),
 /// docs/theory/dynamic_points.md.
@@ -22,8 +28,9 @@ FilterResult DynamicFilter::judge(const vision::RgbdImage& image, Extraction ext
   Surfaces surfaces = divide_into_surfaces(image);
   const std::vector<SceneObject> objects = find_objects(image, surfaces, detector);  // boxes to masks, tracks
   clock.finish(msg::kStageMasks);
-  Verdict verdict = judge_->judge({image, surfaces, objects, detector.active}, std::move(features), clock);
+  Verdict verdict = judge_->judge({image, surfaces, objects, detector.active, &gyroscope_}, std::move(features), clock);
   grid_ = std::move(surfaces.grid);
+  gyroscope_.forget_before(msg::minus_ns(image.stamp_ns, kTurnsNs));
   return complete(std::move(verdict), objects, grid_.shape, clock, extraction.ms);
 }
 
@@ -34,6 +41,7 @@ DynamicFilter::DynamicFilter(const FilterConfig& config, std::function<std::int6
       extractor_(config.orb),
       sampler_(config.orb.min_depth_m, config.orb.max_depth_m),
       objects_(config_),
+      gyroscope_(config.gyroscope),
       judge_(entry_of(config_.mode).make_judge(config_)) {
   choose_feature_count();
 }
@@ -96,6 +104,7 @@ void DynamicFilter::set_effort(const Effort& effort) {
 void DynamicFilter::reset() {
   judge_->reset();
   objects_.clear();
+  gyroscope_.clear();
   something_masked_ = true;
   choose_feature_count();
 }

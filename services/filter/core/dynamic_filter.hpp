@@ -7,11 +7,11 @@
 #include <memory>
 #include <vector>
 
+#include "services/filter/core/boxes/object_tracker.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
-#include "services/filter/core/orb/orb_extractor.hpp"
-#include "services/filter/core/boxes/object_tracker.hpp"
 #include "services/filter/core/movers/world_movers.hpp"
+#include "services/filter/core/orb/orb_extractor.hpp"
 
 namespace rtd::filter {
 
@@ -62,6 +62,10 @@ class DynamicFilter {
     return filter::sight_objects(result.objects, result, {grid_, sampler_.rays(), color_bgr});
   }
 
+  /// What an IMU beside the camera measured, in order of time and before the frame that ends there: its gyroscope says
+  /// how the camera has turned.
+  void add(const inertial::ImuSample& sample) { gyroscope_.add(sample); }
+
   /// slam's pose of an earlier frame: corrects the pose of its view and of later ones.
   void on_pose(const SlamPose& pose) { judge_->on_pose(pose); }
   void on_keyframe(const SlamKeyframe& keyframe) { judge_->on_keyframe(keyframe); }
@@ -89,6 +93,7 @@ class DynamicFilter {
   DepthGridSampler sampler_;
   DepthGrid grid_;  ///< of the last judged frame
   ObjectTracker objects_;
+  Gyroscope gyroscope_;
   std::unique_ptr<ModeJudge> judge_;
   Effort effort_;
   bool something_masked_ = true;  ///< in the last frame; the first is treated as if

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/msg/filter_modes.hpp"
-#include "services/filter/core/motion/motion_config.hpp"
 #include "services/filter/core/boxes/track_config.hpp"
+#include "services/filter/core/motion/motion_config.hpp"
 
 /// Every setting of the core: the member has the default, bind() below it key, range and help text
 /// (common/service/config.hpp). The defaults are the tested values.
@@ -241,6 +241,7 @@ struct FilterConfig {
   ClusterConfig clusters;
   MaskConfig masks;
   EgoMotionConfig ego_motion;
+  GyroscopeConfig gyroscope;
   GeometryConfig geometry;
   BeliefConfig belief;
   FusionConfig fusion;
@@ -259,6 +260,7 @@ struct FilterConfig {
     binder.section("clusters", clusters);
     binder.section("masks", masks);
     binder.section("ego", ego_motion);
+    binder.section("imu", gyroscope);
     binder.section("geometry", geometry);
     binder.section("belief", belief);
     binder.section("fusion", fusion);

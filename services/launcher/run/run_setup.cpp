@@ -197,8 +197,14 @@ std::vector<std::string> detector_arguments(const RunSetup& setup) {
 }
 
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
-  if (!setup.model_path.empty() || setup.replay.detections || setup.remote_detector) return {};
-  return {"--set", "filter.detector=off"};
+  std::vector<std::string> arguments;
+  const auto set = [&arguments](const std::string& setting) { arguments.insert(arguments.end(), {"--set", setting}); };
+  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector) set("filter.detector=off");
+  const service::MotionTopics& motion = setup.services.motion;
+  if (motion.imu.empty() || !motion.imu_mount_in_base.empty()) return arguments;  // how it is turned is known to slam
+  set("filter.imu.topic=" + motion.imu);
+  if (!motion.imu_mount.empty()) set("filter.imu.mount=" + motion.imu_mount);
+  return arguments;
 }
 
 std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vector<std::string>& wait_for) {

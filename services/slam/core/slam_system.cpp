@@ -29,7 +29,7 @@ void SlamSystem::start_tracker() {
       prior_ ? &*prior_ : nullptr);
 }
 
-void SlamSystem::add(const ImuSample& sample) {
+void SlamSystem::add(const inertial::ImuSample& sample) {
   if (prior_) prior_->add(sample);
 }
 

@@ -83,7 +83,7 @@ class SlamSystem {
   /// source that started again: motion is forgotten, the map stays.
   SlamOutput process(const msg::FeatureFrame& message);
   /// What IMU and wheels measured up to the next frame, where SlamConfig::prior has them; else without effect.
-  void add(const ImuSample& sample);
+  void add(const inertial::ImuSample& sample);
   void add(const WheelSample& sample);
   /// Of IMU and wheels; null where there are none.
   const MotionPrior* prior() const { return prior_ ? &*prior_ : nullptr; }

@@ -181,6 +181,26 @@ void add_image_fault_options(CLI::App& app, std::vector<ImageFault>& faults) {
   add("--blur", ImageFault::Kind::kBlur, "PX:BEGIN:END: colour is smeared along its rows");
 }
 
+void add_imu_options(CLI::App& app, rtd::test_support::OfflineOptions& options) {
+  app.add_option_function<std::uint64_t>(
+      "--imu-of-truth",
+      [&options](std::uint64_t seed) {
+        if (!options.imu_of_truth) options.imu_of_truth.emplace();
+        options.imu_seed = seed;
+      },
+      "SEED: an IMU of 200 Hz made of the source's ground truth, with noise and biases of this seed");
+  app.add_option_function<double>(
+      "--imu-noise",
+      [&options](double factor) {
+        if (!options.imu_of_truth) options.imu_of_truth.emplace();
+        options.imu_of_truth->gyro_noise_rad_s_rthz *= factor;
+        options.imu_of_truth->accel_noise_m_s2_rthz *= factor;
+      },
+      "so many times the noise of a cheap IMU");
+  app.add_flag_callback(
+      "--imu-filter-only", [&options] { options.imu_for_slam = false; }, "the filter has it, slam does not");
+}
+
 void add_slam_options(CLI::App& app, rtd::slam::SlamConfig& slam) {
   app.add_option("--disparity", slam.sensor.disparity_px_m);
   app.add_option("--close-depth", slam.sensor.close_depth_m);
@@ -234,6 +254,7 @@ int main(int argc, char** argv) {
   add_detector_options(app, options.front_end.detector);
   add_image_fault_options(app, options.front_end.image_faults);
   add_slam_options(app, slam_settings.core);
+  add_imu_options(app, options);
   app.add_option("--first-frame", options.first_frame, "pass over so many frames of the source");
   app.add_option("--every", options.frame_step, "use only every n-th frame, as from a slower camera")
       ->check(CLI::Range(1, 1000));

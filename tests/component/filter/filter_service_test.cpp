@@ -392,5 +392,13 @@ TEST_F(FilterServiceTest, refuses_a_motion_level_that_does_not_exist) {
               testing::ThrowsMessage<service::ConfigError>(testing::HasSubstr("dog")));
 }
 
+TEST_F(FilterServiceTest, a_silent_imu_is_named_and_delays_no_frame) {
+  config_.imu = "/camera/imu";
+  start(service::Pace::kAsap, false);
+  for (std::uint64_t seq = 0; seq < 3; ++seq) send_frame(seq);
+  ASSERT_TRUE(answers_.wait_count(3));
+  EXPECT_TRUE(wait_state(msg::ServiceState::kRunning, "no message on /camera/imu"));
+}
+
 }  // namespace
 }  // namespace rtd::filter

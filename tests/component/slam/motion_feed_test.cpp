@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/motion_feed.hpp"
+#include "common/inertial/motion_feed.hpp"
 
 #include <gmock/gmock.h>
 

@@ -12,8 +12,8 @@
 namespace rtd::test_support {
 namespace {
 
-OfflineReport run(const std::string& source, const std::string& mode) {
-  OfflineOptions options;
+OfflineReport run(const std::string& source, const std::string& mode, const OfflineOptions& base = {}) {
+  OfflineOptions options = base;
   options.source = "synthetic:" + source;
   options.front_end.mode = mode;
   options.front_end.detector.kind = "truth";

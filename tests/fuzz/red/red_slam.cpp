@@ -6,10 +6,10 @@
 /// poses. The preset asan-ubsan gives it its teeth.
 #include <memory>
 
+#include "common/inertial/motion_feed.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/motion_feed.hpp"
 #include "services/slam/slam_messages.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"
@@ -110,7 +110,7 @@ class Attack {
     for (int i = 0; i < 2; ++i) {
       msg::Imu imu = imu_of(stamp_ns - 10'000'000 * (1 - i));
       if (hostile) attacker_.attack(imu);
-      if (watch_.passes(imu)) watch_.call("imu", [&] { slam_->add(to_sample(imu)); });
+      if (watch_.passes(imu)) watch_.call("imu", [&] { slam_->add(inertial::to_sample(imu)); });
     }
     msg::Odometry wheels = wheels_of(stamp_ns);
     if (hostile) attacker_.attack(wheels);

@@ -104,7 +104,8 @@ TEST(SlamGravity, a_map_waits_for_an_imu_at_rest_that_knows_what_is_up) {
   SlamSystem slam = slam_with(Gravity::kImu);
   EXPECT_EQ(slam.process(*world.view(0)).result.state, TrackingState::kInitializing);
   for (std::int64_t i = 0; i <= 120; ++i)
-    slam.add(ImuSample{FeatureWorld::stamp_ns(1) + (i - 120) * 5'000'000, Eigen::Vector3d::Zero(), 9.81 * up});
+    slam.add(
+        inertial::ImuSample{FeatureWorld::stamp_ns(1) + (i - 120) * 5'000'000, Eigen::Vector3d::Zero(), 9.81 * up});
   const SlamOutput output = slam.process(*world.view(1));
   EXPECT_EQ(output.result.state, TrackingState::kOk);
   EXPECT_LT((up_in_camera(output.result.T_world_camera) - up).norm(), 1e-9);

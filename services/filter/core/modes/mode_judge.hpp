@@ -10,6 +10,7 @@
 #include "common/msg/features.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/boxes/mover_tracks.hpp"
+#include "services/filter/core/motion/gyroscope.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
 
@@ -49,6 +50,7 @@ struct Scene {
   const Surfaces& surfaces;
   const std::vector<SceneObject>& objects;
   bool detector_active = false;  ///< a detector looks for objects: what has no box is not an object of a known class
+  const Gyroscope* gyroscope = nullptr;  ///< with the samples up to this frame; may be none
   const GridShape& shape() const { return surfaces.grid.shape; }
 };
 

@@ -98,12 +98,22 @@ RtdJudge::Foreground RtdJudge::separate_foreground(const Scene& scene) const {
 CellMask RtdJudge::without_known_surfaces(const Scene& scene, CellMask may_move) const {
   if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return may_move;
   if (std::none_of(may_move.begin(), may_move.end(), [](int cell) { return cell != 0; })) return may_move;
-  const CellBeliefs beliefs = recall_beliefs(scene, views_.predict_pose(scene.image.stamp_ns));
+  const CellBeliefs beliefs = recall_beliefs(scene, predict_pose(scene));
   const float enough = log_odds(config_.belief.min_used_probability);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
     if (is_known(beliefs[cell]) && beliefs[cell] >= enough) may_move[cell] = 0;
   }
   return may_move;
+}
+
+/// Constant velocity, turned as the gyroscope says where there is one.
+Eigen::Isometry3d RtdJudge::predict_pose(const Scene& scene) const {
+  Eigen::Isometry3d T_world_camera = views_.predict_pose(scene.image.stamp_ns);
+  if (scene.gyroscope == nullptr) return T_world_camera;
+  const View& newest = views_.newest();
+  if (const auto turn = scene.gyroscope->turn(newest.stamp_ns, scene.image.stamp_ns))
+    T_world_camera.linear() = newest.T_world_camera.linear() * turn->R_earlier_later;
+  return T_world_camera;
 }
 
 CellBeliefs RtdJudge::recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera,
@@ -156,7 +166,7 @@ Questions RtdJudge::ask(const Scene& scene, const Foreground& foreground, const 
     return {CellMask(foreground.high.size(), 0), CellMask(foreground.high.size(), 0)};
   CellMask excluded = united(foreground.may_move, foreground.high);
   if (!views_.empty()) {
-    const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
+    const Eigen::Isometry3d T_world_predicted = predict_pose(scene);
     excluded = united(std::move(excluded), recall_movers(scene, foreground, T_world_predicted).hold_cs);
     questions_.recall(scene.surfaces.grid, scene.image.camera,
                       T_world_predicted.inverse() * views_.newest().T_world_camera,
@@ -170,7 +180,7 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
                                     const std::vector<msg::Feature>& features, Questions& questions) {
   if (!compares()) return {};
   const GridShape& shape = scene.shape();
-  const Eigen::Isometry3d T_world_predicted = views_.predict_pose(scene.image.stamp_ns);
+  const Eigen::Isometry3d T_world_predicted = predict_pose(scene);
   const CellMask avoid =
       united(dilate(shape, recall_movers(scene, foreground, T_world_predicted).hold_cs, 1), foreground.may_move);
   const auto& p = scene.image.camera.parameters();
@@ -187,7 +197,8 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
                              views_,
                              scene.image.stamp_ns,
                              T_world_predicted,
-                             look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns)};
+                             look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns),
+                             scene.gyroscope};
   if (const std::vector<char> in_question = features_on(questions.open, features, shape); any(in_question)) {
     questions_.answer(questions, foreground.clusters, vote_on_surfaces(input, in_question, config_.ego_motion));
     const CellMask doubted = dilate(shape, united(questions.open, questions.moving), 1);

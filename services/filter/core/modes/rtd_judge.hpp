@@ -57,6 +57,7 @@ class RtdJudge final : public ModeJudge {
   bool uses_geometry() const { return config_.mode == FilterMode::kGeometry || config_.mode == FilterMode::kRtd; }
   /// There is something to compare this frame with.
   bool compares() const { return uses_geometry() && !views_.empty(); }
+  Eigen::Isometry3d predict_pose(const Scene& scene) const;
   CellMask without_known_surfaces(const Scene& scene, CellMask may_move) const;
   CellBeliefs recall_beliefs(const Scene& scene, const Eigen::Isometry3d& T_world_camera,
                              const CellMask* where = nullptr) const;

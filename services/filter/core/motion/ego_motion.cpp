@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/geometry/se3.hpp"
 #include "common/msg/stamps.hpp"
 #include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
@@ -75,6 +76,15 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
   return matches;
 }
 
+/// Whether two views are turned against each other as the gyroscope says. If not, a pose of slam was wrong in between.
+bool turned_alike(const KnownRotation& by_one, const KnownRotation& by_other) {
+  constexpr double kSigmas = 3;
+  if (!by_one || !by_other) return true;
+  const double variance = (by_one->covariance + by_other->covariance).trace() / 3;
+  const Eigen::Vector3d off_rad = geometry::so3_log(by_one->R_world_camera.transpose() * by_other->R_world_camera);
+  return off_rad.squaredNorm() < kSigmas * kSigmas * variance;
+}
+
 std::vector<PointSighting> to_sightings(const std::vector<FeatureMatch>& matches, const EgoMotionInput& input) {
   std::vector<PointSighting> sightings;
   sightings.reserve(matches.size());
@@ -111,13 +121,21 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
   const std::vector<char> none_moves(input.clusters.cells.size(), 0);
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const auto sightings = to_sightings(usable(matches, input, none_moves, limit), input);
-  const StaticConsensus consensus = find_static_consensus(sightings, input.current.camera, T_world_camera, config);
+  const StaticConsensus consensus =
+      find_static_consensus(sightings, input.current.camera, T_world_camera, config, rotation_since(old, input));
   if (consensus.image_share < kMinSlowImageShare) return {};
   return count_votes(to_sightings(matches, input), input.current.camera, consensus.T_world_camera, input.clusters,
                      geometry);
 }
 
 }  // namespace
+
+KnownRotation rotation_since(const View& view, const EgoMotionInput& input) {
+  if (input.gyroscope == nullptr) return std::nullopt;
+  const auto turn = input.gyroscope->turn(view.stamp_ns, input.stamp_ns);
+  if (!turn) return std::nullopt;
+  return vision::RotationPrior{view.T_world_camera.linear() * turn->R_earlier_later, turn->covariance};
+}
 
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
   const msg::Feature& f = input.current.features[match.current];
@@ -166,7 +184,9 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const std::vector<char> none_moves(input.clusters.cells.size(), 0);
   const auto recent = to_sightings(usable(near_matches, input, none_moves, limit), input);
-  const StaticConsensus consensus = find_static_consensus(recent, camera, input.T_world_camera_predicted, config);
+  const KnownRotation rotation = rotation_since(near, input);
+  const StaticConsensus consensus =
+      find_static_consensus(recent, camera, input.T_world_camera_predicted, config, rotation);
   if (consensus.image_share < config.min_image_share) return ego;
 
   const auto all_near = to_sightings(near_matches, input);
@@ -178,9 +198,11 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const auto old_matches = match_by_projection(old, input.current, consensus.T_world_camera,
                                                kRefineWindowRad * camera.parameters().fx, config);
   std::vector<PointSighting> sightings = to_sightings(usable(near_matches, input, moves, limit / 2), input);
-  const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
-  sightings.insert(sightings.end(), more.begin(), more.end());
-  const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers);
+  if (turned_alike(rotation, rotation_since(old, input))) {
+    const std::vector<PointSighting> more = to_sightings(usable(old_matches, input, moves, limit / 2), input);
+    sightings.insert(sightings.end(), more.begin(), more.end());
+  }
+  const RefinedPose refined = refine_pose(sightings, camera, consensus.T_world_camera, config.min_inliers, rotation);
   if (!refined.success) return ego;
   ego.reliable = true;
   ego.settled = msg::minus_ns(input.stamp_ns, near.stamp_ns) >= kMinSettledAgeNs;

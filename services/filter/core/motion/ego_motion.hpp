@@ -11,6 +11,7 @@
 #include "common/vision/features.hpp"
 #include "services/filter/core/filter_config.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
+#include "services/filter/core/motion/gyroscope.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 
@@ -53,7 +54,11 @@ struct EgoMotionInput {
   Eigen::Isometry3d T_world_camera_predicted;
   std::int64_t look_back_ns =
       0;  ///< also compare with a view this old, to find what moves too slowly for 0.1 s; 0 = not in this frame
+  const Gyroscope* gyroscope = nullptr;  ///< none: the image alone says how the camera has turned
 };
+
+/// The rotation of the camera by the gyroscope, from that of a view on.
+KnownRotation rotation_since(const View& view, const EgoMotionInput& input);
 
 /// Where a feature was and is.
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
+
 #include "common/geometry/camera_model.hpp"
 
 namespace rtd::filter {
@@ -27,6 +29,23 @@ struct EgoMotionConfig {
     binder.field("min_image_share", min_image_share, {0.0, 1.0}, "if less of the image agrees on a motion: no pose");
     binder.field("max_proposals", max_proposals, {0, 64}, "surfaces that propose a motion");
     binder.field("max_proposal_sightings", max_proposal_sightings, {6, 2048}, "features per proposal");
+  }
+};
+
+/// A gyroscope fixed to the camera, as its data sheet says.
+struct GyroscopeConfig {
+  double noise_rad_s_rthz = 2e-4;
+  double bias_rad_s = 0.01;
+  double scale_error = 0.01;
+  double time_offset_s = 0;
+  Eigen::Matrix3d R_camera_imu = Eigen::Matrix3d::Identity();  ///< from the IMU's axes to the optical frame
+
+  void bind(auto& binder) {
+    binder.field("gyro_rad_s_rthz", noise_rad_s_rthz, {1e-7, 1.0}, "noise density of the gyroscope, rad/s per root Hz");
+    binder.field("gyro_bias_rad_s", bias_rad_s, {1e-6, 1.0}, "standard deviation of its bias, which stays unknown");
+    binder.field("gyro_scale_error", scale_error, {0.0, 0.5},
+                 "standard deviation of what it and its clock are off, share of a turn");
+    binder.field("time_offset_s", time_offset_s, {-0.5, 0.5}, "added to the stamps of the samples");
   }
 };
 

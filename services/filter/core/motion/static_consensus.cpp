@@ -74,7 +74,7 @@ double displacement_chi2(const PointSighting& s, const geometry::CameraModel& ca
 }
 
 RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                        const Eigen::Isometry3d& T_world_camera_start, int min_inliers) {
+                        const Eigen::Isometry3d& T_world_camera_start, int min_inliers, const KnownRotation& rotation) {
   std::vector<vision::PoseObservation> observations;
   observations.reserve(sightings.size());
   for (const PointSighting& s : sightings) observations.push_back({s.p_world, {s.pixel, s.depth_m}, s.sigma_px, 1.0});
@@ -82,14 +82,15 @@ RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geome
   options.min_inliers = min_inliers;
   options.rounds = 3;
   options.robust_rounds = 2;
+  options.rotation = rotation;
   const auto& p = camera.parameters();
   const auto result = vision::optimize_pose({p.fx, p.fy, p.cx, p.cy}, observations, T_world_camera_start, options);
   return {result.success, result.T_world_camera, result.inliers, result.covariance};
 }
 
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                                      const Eigen::Isometry3d& T_world_camera_predicted,
-                                      const EgoMotionConfig& config) {
+                                      const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config,
+                                      const KnownRotation& rotation) {
   const std::vector<double> votes = tile_votes(sightings);
   StaticConsensus best{T_world_camera_predicted, 0};
   const auto propose = [&](const Eigen::Isometry3d& T_world_camera) {
@@ -103,7 +104,7 @@ StaticConsensus find_static_consensus(const std::vector<PointSighting>& sighting
   propose(T_world_camera_predicted);
   for (const std::vector<PointSighting>& group : proposing_groups(sightings, config)) {
     const auto thinned = vision::thin_out(group, static_cast<std::size_t>(config.max_proposal_sightings));
-    const RefinedPose pose = refine_pose(thinned, camera, T_world_camera_predicted, config.min_inliers);
+    const RefinedPose pose = refine_pose(thinned, camera, T_world_camera_predicted, config.min_inliers, rotation);
     if (pose.success) propose(pose.T_world_camera);
   }
   return best;

@@ -8,6 +8,7 @@
 
 #include "common/geometry/camera_model.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/vision/pose_optimizer.hpp"
 #include "services/filter/core/filter_config.hpp"
 
 namespace rtd::filter {
@@ -32,6 +33,9 @@ std::optional<Eigen::Vector2d> displacement_px(const PointSighting& sighting, co
 double displacement_chi2(const PointSighting& sighting, const geometry::CameraModel& camera,
                          const Eigen::Isometry3d& T_camera_world);
 
+/// How the camera is turned by a gyroscope; empty without one.
+using KnownRotation = std::optional<vision::RotationPrior>;
+
 /// Robust least squares over some sightings (common/vision/pose_optimizer).
 struct RefinedPose {
   bool success = false;
@@ -40,7 +44,8 @@ struct RefinedPose {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< of (position, rotation) in the world
 };
 RefinedPose refine_pose(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                        const Eigen::Isometry3d& T_world_camera_start, int min_inliers);
+                        const Eigen::Isometry3d& T_world_camera_start, int min_inliers,
+                        const KnownRotation& rotation = {});
 
 /// The camera motion that the largest part of the IMAGE agrees with.
 struct StaticConsensus {
@@ -54,6 +59,7 @@ struct StaticConsensus {
 /// camera and a rotation nearly cancel on distant walls: a wrong motion that carries the mover along shows only in many
 /// small residuals. docs/theory/dynamic_points.md section 2.
 StaticConsensus find_static_consensus(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                                      const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config);
+                                      const Eigen::Isometry3d& T_world_camera_predicted, const EgoMotionConfig& config,
+                                      const KnownRotation& rotation = {});
 
 }  // namespace rtd::filter

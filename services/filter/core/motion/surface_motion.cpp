@@ -68,9 +68,10 @@ SurfaceVote vote(const RelativeMotion& motion, double age_s) {
 std::map<int, RelativeMotion> relative_motions(const std::map<int, std::vector<PointSighting>>& surfaces,
                                                const std::vector<PointSighting>& rest,
                                                const geometry::CameraModel& camera,
-                                               const Eigen::Isometry3d& T_world_camera_start) {
+                                               const Eigen::Isometry3d& T_world_camera_start,
+                                               const KnownRotation& rotation) {
   std::map<int, RelativeMotion> motions;
-  const RefinedPose by_rest = refine_pose(rest, camera, T_world_camera_start, kMinOfRest);
+  const RefinedPose by_rest = refine_pose(rest, camera, T_world_camera_start, kMinOfRest, rotation);
   if (!by_rest.success) return motions;
   for (const auto& [cluster, sightings] : surfaces) {
     const RefinedPose by_surface = refine_pose(sightings, camera, T_world_camera_start, kMinOfSurface);
@@ -89,7 +90,8 @@ std::vector<SurfaceVote> vote_on_surfaces(const EgoMotionInput& input, const std
     last = &view;
     const SharedSightings shared = sightings_since(view, input, in_question, config);
     for (const auto& [cluster, motion] :
-         relative_motions(shared.surfaces, shared.rest, input.current.camera, input.T_world_camera_predicted)) {
+         relative_motions(shared.surfaces, shared.rest, input.current.camera, input.T_world_camera_predicted,
+                          rotation_since(view, input))) {
       majority[static_cast<std::size_t>(cluster)] +=
           static_cast<int>(vote(motion, msg::minus_s(input.stamp_ns, view.stamp_ns)));
     }

@@ -22,11 +22,13 @@ struct RelativeMotion {
 
 /// Compares the motion of the camera under which each surface stands still with that under which the rest does, each
 /// with the covariance that its own sightings give it. By surface; without those that have too few sightings, and
-/// without any where the rest has. docs/theory/dynamic_points.md section 2.
+/// without any where the rest has. `rotation`: of the camera, which the rest shows, but not a surface that may turn.
+/// docs/theory/dynamic_points.md section 2.
 std::map<int, RelativeMotion> relative_motions(const std::map<int, std::vector<PointSighting>>& surfaces,
                                                const std::vector<PointSighting>& rest,
                                                const geometry::CameraModel& camera,
-                                               const Eigen::Isometry3d& T_world_camera_start);
+                                               const Eigen::Isometry3d& T_world_camera_start,
+                                               const KnownRotation& rotation = {});
 
 /// What one frame says about a surface that may be a carried thing. Votes add up.
 enum class SurfaceVote : std::int8_t { kRests = -1, kNone = 0, kMoves = 1 };

@@ -44,13 +44,13 @@ InertialFilter::InertialFilter(const ImuConfig& config, const Eigen::Isometry3d&
 }
 
 /// docs/theory/inertial.md Eq. (6), (7).
-void InertialFilter::predict(const Preintegration& motion) {
+void InertialFilter::predict(const inertial::Preintegration& motion) {
   const double dt_s = motion.duration_s();
   const Matrix3 R = state_.T_world_imu.linear();
   const Matrix3 R_next = R * motion.rotation();
   const Eigen::Vector3d gained = R * motion.velocity(), moved = R * motion.position();
   const Eigen::Vector3d g = state_.gravity_m_s2;
-  const Preintegration::Matrix96d& J = motion.bias_jacobian();
+  const inertial::Preintegration::Matrix96d& J = motion.bias_jacobian();
 
   Matrix18d F = Matrix18d::Identity();
   F.block<3, 6>(kRotation, kGyroBias) = R_next * J.topRows<3>();
@@ -102,6 +102,10 @@ Eigen::Matrix<double, 6, 18> InertialFilter::camera_jacobian() const {
   H.block<3, 3>(0, kRotation) = -skew(state_.T_world_imu.linear() * T_imu_camera_.translation());
   H.block<3, 3>(3, kRotation).setIdentity();
   return H;
+}
+
+Eigen::Matrix3d InertialFilter::gyro_bias_covariance() const {
+  return P_.block<3, 3>(kGyroBias, kGyroBias);
 }
 
 PredictedPose InertialFilter::camera() const {
@@ -163,7 +167,7 @@ void InertialFilter::update(const PredictedPose& measured) {
 }
 
 /// Eq. (12): the way is linear in the velocity at its end.
-void InertialFilter::update_way(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+void InertialFilter::update_way(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
                                 const Eigen::Vector3d& point_m, const Eigen::Vector3d& way_world_m,
                                 const Eigen::Matrix3d& covariance) {
   const double dt_s = motion.duration_s();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
-#include "services/slam/core/inertial/preintegration.hpp"
+#include "common/inertial/preintegration.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/pose_uncertainty.hpp"
@@ -17,7 +17,7 @@ namespace rtd::slam {
 struct InertialState {
   Eigen::Isometry3d T_world_imu = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();  ///< world
-  ImuBias bias;
+  inertial::ImuBias bias;
   Eigen::Vector3d gravity_m_s2 = Eigen::Vector3d::Zero();  ///< world, points down
 };
 
@@ -34,13 +34,13 @@ class InertialFilter {
                  const Eigen::Vector3d& accel_m_s2);
 
   /// The motion since the last call, integrated with bias().
-  void predict(const Preintegration& motion);
+  void predict(const inertial::Preintegration& motion);
   /// The samples since the last call are missing: `gap_s` later the camera may be where a hand has moved it.
   void predict_blind(double gap_s);
   /// slam measured the pose of the camera. Far off the prediction, it is weighed less.
   void update(const PredictedPose& camera);
   /// Mean velocity over the last `motion`, of a point of the IMU's body (IMU axes, m), in the world.
-  void update_way(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+  void update_way(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
                   const Eigen::Vector3d& point_m, const Eigen::Vector3d& way_world_m,
                   const Eigen::Matrix3d& covariance);
   /// The map was corrected under the camera: the world moved by this.
@@ -49,8 +49,9 @@ class InertialFilter {
   void relocate(const PredictedPose& camera);
 
   const InertialState& state() const { return state_; }
-  const ImuBias& bias() const { return state_.bias; }
+  const inertial::ImuBias& bias() const { return state_.bias; }
   const Matrix18d& covariance() const { return P_; }
+  Eigen::Matrix3d gyro_bias_covariance() const;
   /// The pose of this frame is predicted: what is measured during the next second corrects it. Eq. (14).
   void remember(std::uint64_t seq);
   /// What was found out since the last call.

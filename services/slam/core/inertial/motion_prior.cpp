@@ -20,7 +20,7 @@ MotionPrior::MotionPrior(const SlamConfig& config)
       T_imu_base_(T_imu_camera_ * config.prior.T_base_camera.inverse()),
       wheels_(config.wheel) {}
 
-void MotionPrior::add(ImuSample sample) {
+void MotionPrior::add(inertial::ImuSample sample) {
   sample.stamp_ns = msg::plus_ns(sample.stamp_ns, msg::ns_of(config_.imu.time_offset_s));
   imu_.add(sample);
 }
@@ -40,6 +40,20 @@ std::optional<PredictedPose> MotionPrior::advance(std::int64_t stamp_ns) {
   return expected();
 }
 
+/// With the bias as far as it is known. Before the filter is ready it has hardly seen a turn.
+std::optional<inertial::CameraTurn> MotionPrior::turn_since(std::int64_t from_ns) const {
+  constexpr double kScaleError = 0.01;
+  if (!config_.prior.imu) return std::nullopt;
+  const bool known = filter_ && filter_->ready();
+  const auto motion = imu_.integrate(from_ns, now_ns_, known ? filter_->bias() : inertial::ImuBias{},
+                                     {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
+  if (!motion) return std::nullopt;
+  const Eigen::Matrix3d bias =
+      known ? filter_->gyro_bias_covariance()
+            : Eigen::Matrix3d(std::pow(config_.imu.gyro_bias_rad_s, 2) * Eigen::Matrix3d::Identity());
+  return inertial::turn_of_camera(*motion, config_.prior.T_camera_imu.linear(), {bias, kScaleError});
+}
+
 void MotionPrior::advance_filter(std::int64_t stamp_ns) {
   const auto motion =
       imu_.integrate(before_ns_, stamp_ns, filter_->bias(), {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
@@ -53,7 +67,7 @@ void MotionPrior::advance_filter(std::int64_t stamp_ns) {
 }
 
 /// The distance that the base covers gives the velocity; turns are better known by the gyroscope.
-void MotionPrior::use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+void MotionPrior::use_wheels(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
                              std::int64_t from_ns) {
   const auto way = wheels_.motion(from_ns, now_ns_);
   if (!way) return;
@@ -109,6 +123,11 @@ void MotionPrior::relocate(const PredictedPose& measured) {
   filter_ ? filter_->relocate(measured) : begin_filter(measured);
 }
 
+void MotionPrior::begin_again(const PredictedPose& measured) {
+  if (filter_) filter_->predict_blind(0);
+  relocate(measured);
+}
+
 void MotionPrior::remember(std::uint64_t seq) {
   if (filter_ && filter_->ready()) filter_->remember(seq);
 }
@@ -137,7 +156,7 @@ void MotionPrior::restart() {
 }
 
 std::optional<Eigen::Vector3d> MotionPrior::up_in_camera() const {
-  if (const auto up_imu = up_at_rest(imu_, kRest_s)) return config_.prior.T_camera_imu.linear() * *up_imu;
+  if (const auto up_imu = inertial::up_at_rest(imu_, kRest_s)) return config_.prior.T_camera_imu.linear() * *up_imu;
   if (!filter_ || !filter_->ready()) return std::nullopt;
   const InertialState& state = filter_->state();
   const Eigen::Vector3d up_imu = -(state.T_world_imu.linear().transpose() * state.gravity_m_s2).normalized();

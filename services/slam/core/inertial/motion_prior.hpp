@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "common/inertial/camera_turn.hpp"
 #include "services/slam/core/inertial/inertial_filter.hpp"
 #include "services/slam/core/inertial/wheel_stream.hpp"
 
@@ -15,17 +16,21 @@ class MotionPrior {
  public:
   explicit MotionPrior(const SlamConfig& config);
 
-  void add(ImuSample sample);
+  void add(inertial::ImuSample sample);
   void add(const WheelSample& sample) { wheels_.add(sample); }
   /// Whether everything up to this stamp has come.
   bool reaches(std::int64_t stamp_ns) const;
 
   /// The frame in work. Its expected pose, once IMU or wheels can say one; the covariance is relative to the map.
   std::optional<PredictedPose> advance(std::int64_t stamp_ns);
+  /// How the camera has turned from then to the frame in work, by the gyroscope; empty without one.
+  std::optional<inertial::CameraTurn> turn_since(std::int64_t from_ns) const;
   /// Its pose by the map, covariance relative to the map. The expected pose with it.
   std::optional<PredictedPose> correct(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
+  /// The velocity was wrong: it is learnt again from here on.
+  void begin_again(const PredictedPose& measured);
   /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.
   void remember(std::uint64_t seq);
   std::vector<PoseCorrection> take_corrections();
@@ -40,19 +45,20 @@ class MotionPrior {
   /// filter has learned; empty before either. Eq. (13).
   std::optional<Eigen::Vector3d> up_in_camera() const;
   const std::optional<InertialFilter>& filter() const { return filter_; }
-  const ImuCounters& imu_counters() const { return imu_.counters(); }
+  const inertial::ImuCounters& imu_counters() const { return imu_.counters(); }
   const WheelCounters& wheel_counters() const { return wheels_.counters(); }
 
  private:
   void advance_filter(std::int64_t stamp_ns);
-  void use_wheels(const Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before, std::int64_t from_ns);
+  void use_wheels(const inertial::Preintegration& motion, const Eigen::Isometry3d& T_world_imu_before,
+                  std::int64_t from_ns);
   std::optional<PredictedPose> by_wheels() const;
   std::optional<PredictedPose> expected() const;
   void begin_filter(const PredictedPose& measured);
 
   SlamConfig config_;
   Eigen::Isometry3d T_imu_camera_, T_imu_base_;
-  ImuStream imu_;
+  inertial::ImuStream imu_;
   WheelStream wheels_;
   std::optional<InertialFilter> filter_;
   std::optional<PredictedPose> last_;  ///< measured, at last_ns_: where the wheels continue from

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "services/slam/core/inertial/preintegration.hpp"
+#include "common/inertial/preintegration.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -20,7 +20,7 @@ Eigen::Isometry3d between(const Eigen::Isometry3d& T_a, const Eigen::Isometry3d&
 /// A base that is put elsewhere, or odometry that began again.
 bool is_jump(const WheelSample& before, const WheelSample& sample) {
   constexpr double kMost_m_s = 20, kMost_rad_s = 30, kAlways_m = 0.05;
-  const double gap_s = seconds_between(before.stamp_ns, sample.stamp_ns);
+  const double gap_s = inertial::seconds_between(before.stamp_ns, sample.stamp_ns);
   const Eigen::Isometry3d T = before.T_odom_base.inverse() * sample.T_odom_base;
   return T.translation().norm() > kMost_m_s * gap_s + kAlways_m ||
          geometry::rotation_angle_rad(T) > kMost_rad_s * gap_s + kAlways_m;
@@ -44,7 +44,7 @@ void WheelStream::add(const WheelSample& sample) {
   }
   strays_ = 0;
   if (!samples_.empty()) {
-    if (seconds_between(samples_.back().stamp_ns, sample.stamp_ns) > kMaxGap_s) ++counters_.gaps;
+    if (inertial::seconds_between(samples_.back().stamp_ns, sample.stamp_ns) > kMaxGap_s) ++counters_.gaps;
     if (is_jump(samples_.back(), sample)) {
       ++counters_.jumps;
       samples_.clear();
@@ -61,13 +61,13 @@ std::optional<Eigen::Isometry3d> WheelStream::pose_at(std::int64_t stamp_ns) con
   if (next != samples_.end() && next->stamp_ns == stamp_ns) return next->T_odom_base;
   if (next == samples_.begin() || samples_.size() < 2) return std::nullopt;
   if (next == samples_.end()) {
-    if (seconds_between(samples_.back().stamp_ns, stamp_ns) > kMaxGap_s) return std::nullopt;
+    if (inertial::seconds_between(samples_.back().stamp_ns, stamp_ns) > kMaxGap_s) return std::nullopt;
     --next;
   }
   const WheelSample &a = *std::prev(next), &b = *next;
-  if (seconds_between(a.stamp_ns, b.stamp_ns) > kMaxGap_s) return std::nullopt;
+  if (inertial::seconds_between(a.stamp_ns, b.stamp_ns) > kMaxGap_s) return std::nullopt;
   return between(a.T_odom_base, b.T_odom_base,
-                 seconds_between(a.stamp_ns, stamp_ns) / seconds_between(a.stamp_ns, b.stamp_ns));
+                 inertial::seconds_between(a.stamp_ns, stamp_ns) / inertial::seconds_between(a.stamp_ns, b.stamp_ns));
 }
 
 std::optional<WheelMotion> WheelStream::motion(std::int64_t from_ns, std::int64_t to_ns) const {
@@ -75,11 +75,12 @@ std::optional<WheelMotion> WheelStream::motion(std::int64_t from_ns, std::int64_
   if (!T_odom_first || !T_odom_last || to_ns <= from_ns) return std::nullopt;
   for (std::size_t i = 1; i < samples_.size(); ++i) {
     const bool inside = samples_[i].stamp_ns > from_ns && samples_[i - 1].stamp_ns < to_ns;
-    if (inside && seconds_between(samples_[i - 1].stamp_ns, samples_[i].stamp_ns) > kMaxGap_s) return std::nullopt;
+    if (inside && inertial::seconds_between(samples_[i - 1].stamp_ns, samples_[i].stamp_ns) > kMaxGap_s)
+      return std::nullopt;
   }
   WheelMotion motion;
   motion.T_first_last = T_odom_first->inverse() * *T_odom_last;
-  motion.covariance = covariance_of(motion.T_first_last, seconds_between(from_ns, to_ns));
+  motion.covariance = covariance_of(motion.T_first_last, inertial::seconds_between(from_ns, to_ns));
   return motion;
 }
 

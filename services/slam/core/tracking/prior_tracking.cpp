@@ -11,8 +11,21 @@ namespace rtd::slam {
 void Tracker::expect(const Frame& frame) {
   constexpr double kForgotten = 0.003;  // of the usual number in each frame: ten seconds
   usual_features_ = std::max((1 - kForgotten) * usual_features_, static_cast<double>(frame.features.size()));
-  weighed_ = false;
-  if (prior_ != nullptr) expected_ = prior_->advance(frame.stamp_ns);
+  weighed_ = turned_ = false;
+  if (prior_ == nullptr) return;
+  expected_ = prior_->advance(frame.stamp_ns);
+  rotation_ = rotation_since_last(frame.stamp_ns);
+}
+
+/// Where the last frame has a pose. Its error and that of the gyroscope add up. docs/theory/inertial.md Eq. (15).
+std::optional<vision::RotationPrior> Tracker::rotation_since_last(std::int64_t now_ns) const {
+  constexpr double kMost_s = 1.0;
+  if (last_.frame == nullptr || !msg::has_pose(state_)) return std::nullopt;
+  const auto turn = prior_->turn_since(last_.frame->stamp_ns);
+  if (!turn || inertial::seconds_between(last_.frame->stamp_ns, now_ns) > kMost_s) return std::nullopt;
+  const Eigen::Matrix3d R_world_camera = last_.T_world_camera.linear() * turn->R_earlier_later;
+  return vision::RotationPrior{R_world_camera,
+                               turn->covariance + R_world_camera.transpose() * rotation_covariance_ * R_world_camera};
 }
 
 /// Whether something hides most of what there was to see a moment ago.
@@ -32,7 +45,7 @@ void Tracker::weigh_against_prior(PoseGuess& guess) {
 /// Whether IMU or wheels still know the pose well enough to claim it. docs/theory/inertial.md, "Predicted poses".
 bool Tracker::follows_prior(const Frame& frame) const {
   if (!expected_ || !config_.techniques.prediction || !msg::has_pose(state_)) return false;
-  const double gap_s = seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
+  const double gap_s = inertial::seconds_between(last_.frame->stamp_ns, frame.stamp_ns);
   const Eigen::Matrix3d position = expected_->covariance.topLeftCorner<3, 3>();
   return gap_s > 0 && gap_s <= config_.prior.max_hold_s &&
          geometry::largest_sigma(position) <= config_.prior.max_sigma_m;
@@ -48,10 +61,20 @@ double Tracker::expected_radius_px(const Frame& frame) const {
   return kOfFeature_px + frame.camera.fx * std::min(kSigmas * seen_rad, kMost_rad);
 }
 
+/// Whether a view that is not covered turns as the gyroscope says. What contradicts such a pose is the accelerometer: a
+/// filter that began beside something that moves has learnt a wrong velocity.
+bool Tracker::turns_as_measured(const Frame& frame, const PoseGuess& guess) const {
+  constexpr double kMaxTurn2 = 11.3;  // 99 % of chi2 with 3 degrees of freedom
+  if (!rotation_ || covered(frame)) return false;
+  const Eigen::Vector3d off_rad =
+      geometry::so3_log(rotation_->R_world_camera.transpose() * guess.T_world_camera.linear());
+  return off_rad.dot(rotation_->covariance.ldlt().solve(off_rad)) < kMaxTurn2;
+}
+
 /// A person who fills the view takes many matches along, but not the IMU: only a pose that most of the expected
 /// landmarks support is believed against it.
 bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const {
-  if (!follows_prior(frame)) return false;
+  if (!follows_prior(frame) || turns_as_measured(frame, tracking.guess)) return false;
   const PredictedPose measured{tracking.guess.T_world_camera, config_.sensor.shared_error * tracking.guess.covariance};
   const double distance2 = pose_distance2(*expected_, measured);
   const double most2 = covered(frame) ? kMaxPoseDistance2 : config_.prior.contradiction * config_.prior.contradiction;
@@ -62,7 +85,10 @@ bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& trac
 void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pose) {
   const PredictedPose measured{last_.T_world_camera, config_.prior.visual_factor * covariance};
   const bool found_again = !had_pose && (!expected_ || pose_distance2(*expected_, measured) > kMaxPoseDistance2);
-  if (found_again) {
+  const double contradiction2 = config_.prior.contradiction * config_.prior.contradiction;
+  if (had_pose && turned_ && pose_distance2(*expected_, measured) > contradiction2) {
+    prior_->begin_again(measured);
+  } else if (found_again) {
     prior_->relocate(measured);
   } else {
     prior_->correct(measured);

@@ -76,6 +76,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   outcome.tracked = last_;
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
+  rotation_covariance_.setZero();
   keyframe_ns_ = last_.frame->stamp_ns;
   failing_since_ns_.reset();
   apart_since_ns_.reset();
@@ -110,6 +111,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
     if (!acceptable(tracking.guess) || !believable(*frame, guess, tracking)) continue;
     outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
     outcome.inliers = tracking.guess.inliers;
+    turned_ = expected_ && turns_as_measured(*frame, tracking.guess);
     if (covered(*frame)) weigh_against_prior(tracking.guess);
     accept(outcome, std::move(frame), tracking);
     return outcome;
@@ -117,6 +119,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
   outcome.inliers = tracking.guess.inliers;
   const std::int64_t failed_ns = now_ns_();
+  rotation_.reset();  // of a camera that is elsewhere nothing is known
   auto found = follows_prior(*frame) ? std::nullopt : relocalizer_.search(frame, msg::has_pose(state_), context());
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
   if (found) {
@@ -311,6 +314,7 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
   inliers_ = tracking.guess.inliers;
+  rotation_covariance_ = tracking.guess.covariance.bottomRightCorner<3, 3>();
 }
 
 void Tracker::count(const LocalMapTracking& tracking) {

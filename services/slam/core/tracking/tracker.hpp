@@ -100,7 +100,7 @@ class Tracker {
   KeyframeProposal propose_keyframe();
 
  private:
-  TrackingContext context() const { return {config_, now_ns_}; }
+  TrackingContext context() const { return {config_, now_ns_, rotation_}; }
   /// What an error of the calibration adds by the way from where the map began. docs/theory/tracking.md Eq. (15).
   geometry::Matrix6d of_calibration(const Eigen::Isometry3d& T_world_camera) const {
     return calibration_covariance(config_.first_pose.inverse() * T_world_camera, scene_m_,
@@ -109,11 +109,13 @@ class Tracker {
   void adopt_pose(const LocalMap& map);
   ExpectedPose predict(const Frame& frame) const;
   void expect(const Frame& frame);
+  std::optional<vision::RotationPrior> rotation_since_last(std::int64_t now_ns) const;
   double expected_radius_px(const Frame& frame) const;
   bool follows_prior(const Frame& frame) const;
   bool hidden(const Frame& frame) const;
   bool covered(const Frame& frame) const { return follows_prior(frame) && hidden(frame); }
   void weigh_against_prior(PoseGuess& guess);
+  bool turns_as_measured(const Frame& frame, const PoseGuess& guess) const;
   bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
   void report_to_prior(const geometry::Matrix6d& covariance, bool had_pose);
   /// Ways to a first guess of the pose, in the order in which they are tried.
@@ -136,9 +138,12 @@ class Tracker {
   SlamConfig config_;
   Clock now_ns_;
   MotionPrior* prior_;
-  std::optional<PredictedPose> expected_;  ///< of the frame in work, by the prior
-  bool weighed_ = false;                   ///< the pose of the frame in work is also by the prior
-  double usual_features_ = 0;              ///< static ones of the last seconds
+  std::optional<PredictedPose> expected_;          ///< of the frame in work, by the prior
+  std::optional<vision::RotationPrior> rotation_;  ///< of the frame in work, by the gyroscope from last_ on
+  Eigen::Matrix3d rotation_covariance_ = Eigen::Matrix3d::Zero();  ///< of last_ against the map, in the world
+  bool turned_ = false;        ///< the pose of the frame in work has turned as the gyroscope says
+  bool weighed_ = false;       ///< the pose of the frame in work is also by the prior
+  double usual_features_ = 0;  ///< static ones of the last seconds
   Relocalizer relocalizer_;
   msg::TrackingState state_ = msg::TrackingState::kInitializing;
   TrackedFrame last_;

@@ -34,6 +34,7 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   for (const Association& association : associations) observations.push_back(make_observation(frame, association));
   vision::PoseOptimizerOptions options;
   if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
+  options.rotation = context.rotation;
   const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
   PoseGuess guess;
   guess.success = optimized.success;

@@ -51,6 +51,7 @@ struct Association {
 struct TrackingContext {
   const SlamConfig& config;
   const Clock& now_ns;
+  std::optional<vision::RotationPrior> rotation = {};  ///< of the frame, by a gyroscope
 };
 
 /// Where the camera is looked for.

@@ -32,10 +32,15 @@ class SurfaceMotionTest : public ::testing::Test {
     }
     return sightings;
   }
-  std::optional<RelativeMotion> compare(const std::vector<PointSighting>& thing,
-                                        const std::vector<PointSighting>& rest) const {
-    const auto motions = relative_motions({{0, thing}}, rest, camera_, Eigen::Isometry3d::Identity());
+  std::optional<RelativeMotion> compare(const std::vector<PointSighting>& thing, const std::vector<PointSighting>& rest,
+                                        const KnownRotation& rotation = {}) const {
+    const auto motions = relative_motions({{0, thing}}, rest, camera_, Eigen::Isometry3d::Identity(), rotation);
     return motions.empty() ? std::nullopt : std::optional(motions.at(0));
+  }
+  /// A gyroscope's, that is off by a milliradian or so.
+  vision::RotationPrior known_rotation() const {
+    const Eigen::Matrix3d R = T_world_camera_.linear() * geometry::so3_exp({0.001, -0.001, 0.0005});
+    return {R, 1e-6 * Eigen::Matrix3d::Identity()};
   }
   std::mt19937_64 random_{7};
   geometry::CameraModel camera_ = test::pinhole();
@@ -66,6 +71,24 @@ TEST_F(SurfaceMotionTest, is_less_certain_before_a_wall_with_few_features) {
              few = compare(thing, make(25, {0, 0, 640, 480}, 3.5));
   ASSERT_TRUE(many && few);
   EXPECT_LT(1.5 * many->sigma_m, few->sigma_m);
+}
+
+TEST_F(SurfaceMotionTest, is_decided_by_a_known_rotation_before_a_wall_with_few_features) {
+  std::vector<double> alone, known, resting;
+  for (int i = 0; i < 20; ++i) {
+    const auto carried = make(60, {240, 160, 160, 160}, 1.5, {0.04, 0, 0}), still = make(60, {240, 160, 160, 160}, 1.5);
+    const auto wall = make(25, {0, 0, 640, 480}, 3.5);
+    const auto without = compare(carried, wall), with = compare(carried, wall, known_rotation());
+    const auto rests = compare(still, wall, known_rotation());
+    ASSERT_TRUE(without && with && rests);
+    EXPECT_LT(with->sigma_m, without->sigma_m);
+    alone.push_back(without->distance2);
+    known.push_back(with->distance2);
+    resting.push_back(rests->distance2);
+  }
+  EXPECT_LT(vision::median(alone), 40) << "open";
+  EXPECT_GT(vision::median(known), 40) << "it moves";
+  EXPECT_NEAR(vision::median(resting), 2.4, 1.8);
 }
 
 TEST_F(SurfaceMotionTest, is_unknown_with_too_few_sightings) {

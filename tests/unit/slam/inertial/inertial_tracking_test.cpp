@@ -34,7 +34,8 @@ class InertialTracking : public ::testing::Test {
   void feed_imu(std::uint64_t seq) {
     while (static_cast<double>(next_imu_) / 200 < static_cast<double>(seq) / 30 + 0.005) {
       const camera::ImuReading reading = imu_.reading(next_imu_++);
-      slam().add(ImuSample{reading.stamp_ns + FeatureWorld::stamp_ns(0), reading.gyro_rad_s, reading.accel_m_s2});
+      slam().add(
+          inertial::ImuSample{reading.stamp_ns + FeatureWorld::stamp_ns(0), reading.gyro_rad_s, reading.accel_m_s2});
     }
   }
   FrameResult show(std::uint64_t seq, std::unique_ptr<msg::FeatureFrame> view) {

@@ -52,7 +52,8 @@ class Drive {
     const double t_s = static_cast<double>(frame_++) / kFps;
     for (; static_cast<double>(imu_index_) / 200 < t_s + 0.005; ++imu_index_) {
       const camera::ImuReading reading = imu_.reading(imu_index_);
-      if (!muted_) prior_->add(ImuSample{reading.stamp_ns + kFirst_ns, reading.gyro_rad_s, reading.accel_m_s2});
+      if (!muted_)
+        prior_->add(inertial::ImuSample{reading.stamp_ns + kFirst_ns, reading.gyro_rad_s, reading.accel_m_s2});
     }
     while (wheels_.next_s() < t_s + 0.02) {
       const camera::WheelReading reading = wheels_.next();

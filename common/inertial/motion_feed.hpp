@@ -12,29 +12,33 @@
 #include <vector>
 
 #include "common/bus/topic_follower.hpp"
+#include "common/inertial/preintegration.hpp"
 #include "common/msg/imu.hpp"
-#include "services/slam/core/inertial/preintegration.hpp"
-#include "services/slam/core/inertial/wheel_stream.hpp"
-#include "services/slam/core/slam_system.hpp"
 
-namespace rtd::slam {
+namespace rtd::inertial {
 
-/// The messages of drivers as the core takes them. Whether the values can be is the core's to say.
+/// The message of a driver as a core takes it. Whether the values can be is the core's to say.
 ImuSample to_sample(const msg::Imu& imu);
-WheelSample to_sample(const msg::Odometry& odometry);
+
+/// ROS names of the topics of a service; empty: none.
+struct MotionFeedTopics {
+  std::string imu, wheels;
+  std::string section;  ///< of the configuration that names them: "slam"
+};
 
 /// Reads `sensor_msgs/Imu` and `nav_msgs/Odometry` on a connection of its own, as their writers offer them: best effort
 /// where a driver offers no more. Samples wait until the frame that needs them; the oldest go when too many do.
 class MotionFeed {
  public:
-  /// ROS names of the topics; empty: none. Throws BusError when the bus refuses.
-  MotionFeed(const bus::BusOptions& options, const std::string& imu_topic, const std::string& wheel_topic);
+  /// Throws BusError when the bus refuses.
+  MotionFeed(const bus::BusOptions& options, const MotionFeedTopics& topics);
 
   /// Waits until every topic that is published has a sample of this stamp or later, but no longer than `most`. Once it
   /// has waited in vain, it waits no more until samples come again.
   void await(std::int64_t stamp_ns, std::chrono::milliseconds most);
-  /// Gives slam what has come.
-  void drain(SlamSystem& slam);
+  /// What has come since the last call, in order of arrival.
+  std::deque<ImuSample> take_imu();
+  std::deque<msg::Odometry> take_wheels();
 
   struct Counters {
     std::uint64_t received = 0, undecodable = 0, overflowed = 0;
@@ -64,12 +68,13 @@ class MotionFeed {
   template <class Message, class Sample>
   void receive(Subscription<Sample>& subscription, const bus::RawSample& sample);
 
+  const std::string section_;
   mutable std::mutex mutex_;
   std::condition_variable arrived_;
   Subscription<ImuSample> imu_;
-  Subscription<WheelSample> wheels_;
+  Subscription<msg::Odometry> wheels_;
   std::shared_ptr<bus::RawBus> bus_;
   bus::TopicFollower follower_;
 };
 
-}  // namespace rtd::slam
+}  // namespace rtd::inertial

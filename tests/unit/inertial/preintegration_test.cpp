@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/inertial/preintegration.hpp"
+#include "common/inertial/preintegration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/geometry/se3.hpp"
 
-namespace rtd::slam {
+namespace rtd::inertial {
 namespace {
 
 using camera::synthetic::CameraMotion;
@@ -187,4 +187,4 @@ TEST(Rest, is_not_a_steady_turn_or_a_fall) {
 }
 
 }  // namespace
-}  // namespace rtd::slam
+}  // namespace rtd::inertial

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/motion_feed.hpp"
+#include "common/inertial/motion_feed.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +11,16 @@
 #include "common/ros_codec/wire.hpp"
 #include "common/service/log.hpp"
 
-namespace rtd::slam {
+namespace rtd::inertial {
 namespace {
 
 Eigen::Vector3d to_eigen(const msg::Vector3& v) {
   return {v.x, v.y, v.z};
+}
+
+/// A topic is read as it is, or as the core takes it.
+const msg::Odometry& to_sample(const msg::Odometry& odometry) {
+  return odometry;
 }
 
 constexpr std::size_t kMaxWaiting = 4096;
@@ -27,21 +32,10 @@ ImuSample to_sample(const msg::Imu& imu) {
   return {msg::to_ns(imu.header.stamp), to_eigen(imu.angular_velocity), to_eigen(imu.linear_acceleration)};
 }
 
-WheelSample to_sample(const msg::Odometry& odometry) {
-  constexpr std::size_t kForward = 0, kTurning = 35;  // places of the variances
-  const auto& [p, q] = odometry.pose.pose;
-  WheelSample sample;
-  sample.stamp_ns = msg::to_ns(odometry.header.stamp);
-  sample.T_odom_base.translation() << p.x, p.y, p.z;
-  sample.T_odom_base.linear() = Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized().toRotationMatrix();
-  sample.speed_variance = odometry.twist.covariance[kForward];
-  sample.turning_variance = odometry.twist.covariance[kTurning];
-  return sample;
-}
-
-MotionFeed::MotionFeed(const bus::BusOptions& options, const std::string& imu_topic, const std::string& wheel_topic)
-    : imu_{.topic = imu_topic, .dds_type = msg::kImuDdsType},
-      wheels_{.topic = wheel_topic, .dds_type = msg::kOdometryDdsType},
+MotionFeed::MotionFeed(const bus::BusOptions& options, const MotionFeedTopics& topics)
+    : section_(topics.section),
+      imu_{.topic = topics.imu, .dds_type = msg::kImuDdsType},
+      wheels_{.topic = topics.wheels, .dds_type = msg::kOdometryDdsType},
       bus_(bus::connect_raw(options)),
       follower_(*bus_, {.wants = [this](const bus::TopicWriter& writer) { return wants(writer); },
                         .handlers = [this](const bus::RawTopic& topic) { return handlers(topic); },
@@ -86,12 +80,13 @@ void MotionFeed::receive(Subscription<Sample>& subscription, const bus::RawSampl
   const std::lock_guard lock(mutex_);
   ++subscription.counters.received;
   try {
-    subscription.waiting.push_back(to_sample(ros::decode<Message>(ros::Wire::kCdr, {bytes, sample.cdr().size()})));
+    const auto message = ros::decode<Message>(ros::Wire::kCdr, {bytes, sample.cdr().size()});
+    subscription.newest_ns = msg::to_ns(message.header.stamp);
+    subscription.waiting.push_back(to_sample(message));
   } catch (const ros::WireError&) {
     ++subscription.counters.undecodable;
     return;
   }
-  subscription.newest_ns = subscription.waiting.back().stamp_ns;
   subscription.silent = false;
   if (subscription.waiting.size() > kMaxWaiting) {
     subscription.waiting.pop_front();
@@ -110,10 +105,14 @@ void MotionFeed::await(std::int64_t stamp_ns, std::chrono::milliseconds most) {
   wheels_.silent = wheels_.silent || missing(wheels_);
 }
 
-void MotionFeed::drain(SlamSystem& slam) {
+std::deque<ImuSample> MotionFeed::take_imu() {
   const std::lock_guard lock(mutex_);
-  for (const ImuSample& sample : std::exchange(imu_.waiting, {})) slam.add(sample);
-  for (const WheelSample& sample : std::exchange(wheels_.waiting, {})) slam.add(sample);
+  return std::exchange(imu_.waiting, {});
+}
+
+std::deque<msg::Odometry> MotionFeed::take_wheels() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(wheels_.waiting, {});
 }
 
 MotionFeed::Counters MotionFeed::imu_counters() const {
@@ -128,7 +127,8 @@ MotionFeed::Counters MotionFeed::wheel_counters() const {
 
 std::string MotionFeed::trouble() const {
   const std::lock_guard lock(mutex_);
-  const auto of = [](const auto& subscription, const char* key) -> std::string {
+  const auto of = [this](const auto& subscription, const char* of_section) -> std::string {
+    const std::string key = section_ + of_section;
     if (subscription.topic.empty() || subscription.counters.received > subscription.counters.undecodable) return {};
     if (subscription.counters.undecodable > 0)
       return fmt::format("no message on {} can be decoded as {}", subscription.topic,
@@ -138,8 +138,8 @@ std::string MotionFeed::trouble() const {
                          ros2::ros_type(subscription.dds_type), key);
     return fmt::format("no message on {}: does its driver run in this domain? ({})", subscription.topic, key);
   };
-  const std::string imu = of(imu_, "slam.imu.topic");
-  return imu.empty() ? of(wheels_, "slam.wheel.topic") : imu;
+  const std::string imu = of(imu_, ".imu.topic");
+  return imu.empty() ? of(wheels_, ".wheel.topic") : imu;
 }
 
-}  // namespace rtd::slam
+}  // namespace rtd::inertial

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/inertial/preintegration.hpp"
+#include "common/inertial/preintegration.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "common/geometry/se3.hpp"
 
-namespace rtd::slam {
+namespace rtd::inertial {
 namespace {
 
 using geometry::skew;
@@ -168,4 +168,4 @@ std::optional<Eigen::Vector3d> up_at_rest(const ImuStream& samples, double min_s
   return rest ? std::optional<Eigen::Vector3d>(rest->accel_m_s2.normalized()) : std::nullopt;
 }
 
-}  // namespace rtd::slam
+}  // namespace rtd::inertial

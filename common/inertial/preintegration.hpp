@@ -9,7 +9,7 @@
 
 #include "common/msg/stamps.hpp"
 
-namespace rtd::slam {
+namespace rtd::inertial {
 
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   return msg::minus_s(to_ns, from_ns);
@@ -84,8 +84,8 @@ struct ImuCounters {
 /// be used. Not thread-safe.
 class ImuStream {
  public:
-  static constexpr double kMaxGap_s = 0.1;    ///< nothing is known of the motion in a longer pause
-  static constexpr std::size_t kMax = 8192;   ///< 20 s at 400 Hz
+  static constexpr double kMaxGap_s = 0.1;   ///< nothing is known of the motion in a longer pause
+  static constexpr std::size_t kMax = 8192;  ///< 20 s at 400 Hz
 
   void add(const ImuSample& sample);
   void clear() { samples_.clear(); }
@@ -114,4 +114,4 @@ class ImuStream {
 /// The up direction in the IMU's axes, of length 1, of an IMU that has rested for `min_s`; empty when it has not.
 std::optional<Eigen::Vector3d> up_at_rest(const ImuStream& samples, double min_s);
 
-}  // namespace rtd::slam
+}  // namespace rtd::inertial
