@@ -197,13 +197,16 @@ std::vector<std::string> detector_arguments(const RunSetup& setup) {
 }
 
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments;
-  const auto set = [&arguments](const std::string& setting) { arguments.insert(arguments.end(), {"--set", setting}); };
-  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector) set("filter.detector=off");
   const service::MotionTopics& motion = setup.services.motion;
-  if (motion.imu.empty() || !motion.imu_mount_in_base.empty()) return arguments;  // how it is turned is known to slam
-  set("filter.imu.topic=" + motion.imu);
-  if (!motion.imu_mount.empty()) set("filter.imu.mount=" + motion.imu_mount);
+  std::vector<std::string> settings;
+  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector)
+    settings.emplace_back("filter.detector=off");
+  if (!motion.imu.empty() && motion.imu_mount_in_base.empty()) {  // else how it is turned is known to slam alone
+    settings.push_back("filter.imu.topic=" + motion.imu);
+    if (!motion.imu_mount.empty()) settings.push_back("filter.imu.mount=" + motion.imu_mount);
+  }
+  std::vector<std::string> arguments;
+  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
   return arguments;
 }
 
