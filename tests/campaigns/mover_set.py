@@ -5,7 +5,7 @@
 
 Usage: tests/campaigns/mover_set.py --cache FOLDER [--renderer PROGRAM] [--kinds half,mix] [--seeds 1-5]
                                     [--starts 0,20,45] [--modes rtd,geometry,semantic] [--set KEY=VALUE] [--imu SEED]
-                                    [--jobs N]
+                                    [--masks truth|NETWORK.onnx] [--jobs N]
 
 A sequence is a folder KIND_SEED in FOLDER: TUM's layout with true masks in mask/. One that is missing is rendered by
 `PROGRAM OUT KIND SEED FRAMES`. Choose settings on the odd seeds and judge them on the even ones.
@@ -57,6 +57,8 @@ def command(options, folder: pathlib.Path, mode: str, start: int) -> list:
     task = [str(options.program), "--source", str(folder), "--mode", mode, "--first-frame", str(start)]
     if mode in perturbed_runs.WITH_DETECTOR:
         task += ["--detector", "real", "--detections", str(options.cache / (folder.name + ".detections"))]
+        if options.masks:
+            task += ["--masks", options.masks, "--remembered-masks", str(options.cache / (folder.name + ".masks"))]
     for setting in options.set:
         task += ["--set", setting]
     if options.imu is not None:
@@ -104,6 +106,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--modes", default="rtd,geometry,semantic")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
     add_imu(parser)
+    parser.add_argument("--masks", help="people as pixels: truth, or the ONNX file of a network")
     parser.add_argument("--program", type=pathlib.Path, default=stress.PROGRAM)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=pathlib.Path, default=stress.ROOT / "build/movers")
@@ -113,7 +116,7 @@ def parse() -> argparse.Namespace:
 def run_all(options, cases: list) -> list:
     """The results of (folder, mode, start), as they are on record or by new runs."""
     log = options.out / "movers.jsonl"
-    build = stress.build_of(options.program) + settings_of(options)
+    build = stress.build_of(options.program) + settings_of(options) + (options.masks or "")
     known = {}
     if log.exists():
         for result in map(json.loads, log.read_text().splitlines()):
