@@ -17,7 +17,7 @@ struct ServiceConfig {
   FilterConfig core;
   std::string mode = msg::kDefaultFilterMode;
   std::string detector = "auto";
-  std::string person_masks = "on";
+  std::string person_masks = "off";
   int detections_timeout_ms = service::kEveryFramePatience.answer_ms;
   int feedback_timeout_ms = service::kEveryFramePatience.answer_ms;
   bool shed_load = true;

@@ -22,6 +22,7 @@ class FilterServiceTest : public test_support::ServiceFixture<FilterService> {
         events_(bus_->writer(bus::topics::kKeyframes)) {
     receive(bus::topics::kFeatures, answers_);
     config_.feedback_timeout_ms = 5000;
+    config_.person_masks = "on";
   }
   void TearDown() override {
     detector_beats_.stop();
