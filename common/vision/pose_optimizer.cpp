@@ -271,9 +271,15 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
   T_camera_world = geometry::normalized(T_camera_world);
   result.T_world_camera = T_camera_world.inverse();
   Information information = gather(camera, observations, result.inlier, T_camera_world);
-  if (options.rotation) add_rotation(*options.rotation, information);
-  result.success =
-      result.inliers >= options.min_inliers && world_covariance(information, T_camera_world, result.covariance);
+  const bool seen = world_covariance(information, T_camera_world, result.image_covariance);
+  result.covariance = result.image_covariance;
+  bool determined = seen;
+  if (options.rotation) {
+    add_rotation(*options.rotation, information);
+    determined = world_covariance(information, T_camera_world, result.covariance);
+    if (!seen) result.image_covariance = result.covariance;
+  }
+  result.success = result.inliers >= options.min_inliers && determined;
   return result;
 }
 

@@ -51,6 +51,7 @@ struct PoseOptimizerResult {
   /// Covariance of (x y z rx ry rz), m and rad, world frame: p' = p + d, R' = exp(r) R. docs/theory/tracking.md Eq.
   /// (4).
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  geometry::Matrix6d image_covariance = geometry::Matrix6d::Zero();  ///< the same without what a known rotation adds
 };
 
 /// Robust pose of one camera against fixed world points, docs/theory/tracking.md Eq. (1)-(4).

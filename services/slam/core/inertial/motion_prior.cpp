@@ -42,15 +42,15 @@ std::optional<PredictedPose> MotionPrior::advance(std::int64_t stamp_ns) {
 
 /// With the bias as far as it is known. Before the filter is ready it has hardly seen a turn.
 std::optional<inertial::CameraTurn> MotionPrior::turn_since(std::int64_t from_ns) const {
-  constexpr double kScaleError = 0.01;
+  constexpr double kScaleError = 0.01, kLeastBias_rad_s = 0.002;  // poses that it was learnt from share errors
   if (!config_.prior.imu) return std::nullopt;
   const bool known = filter_ && filter_->ready();
   const auto motion = imu_.integrate(from_ns, now_ns_, known ? filter_->bias() : inertial::ImuBias{},
                                      {config_.imu.gyro_rad_s_rthz, config_.imu.accel_m_s2_rthz});
   if (!motion) return std::nullopt;
-  const Eigen::Matrix3d bias =
-      known ? filter_->gyro_bias_covariance()
-            : Eigen::Matrix3d(std::pow(config_.imu.gyro_bias_rad_s, 2) * Eigen::Matrix3d::Identity());
+  Eigen::Matrix3d bias =
+      std::pow(known ? kLeastBias_rad_s : config_.imu.gyro_bias_rad_s, 2) * Eigen::Matrix3d::Identity();
+  if (known) bias += filter_->gyro_bias_covariance();
   return inertial::turn_of_camera(*motion, config_.prior.T_camera_imu.linear(), {bias, kScaleError});
 }
 

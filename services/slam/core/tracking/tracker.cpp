@@ -244,7 +244,10 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   outcome.state = consistency_.doubts(outcome.sigma_m) ? msg::TrackingState::kDoubtful : state_;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
-  if (prior_ != nullptr && !weighed_) report_to_prior(local, had_pose);
+  if (prior_ != nullptr && !weighed_) {  // it has the gyroscope itself
+    const geometry::Matrix6d by_image = config_.sensor.shared_error * tracking.guess.image_covariance;
+    report_to_prior(by_image + consistency_.covariance(scene_m_), had_pose);
+  }
   outcome.covariance = covariance_ + of_calibration(last_.T_world_camera);
 }
 

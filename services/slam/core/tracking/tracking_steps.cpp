@@ -40,6 +40,7 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   guess.success = optimized.success;
   guess.T_world_camera = optimized.T_world_camera;
   guess.covariance = optimized.covariance;
+  guess.image_covariance = optimized.image_covariance;
   guess.optimizer_ns = context.now_ns() - start_ns;
   guess.landmarks.assign(frame.features.size(), kNoLandmark);
   for (std::size_t i = 0; i < associations.size(); ++i) {

@@ -36,6 +36,7 @@ struct PoseGuess {
   int points = 0;                     ///< with them
   std::int64_t optimizer_ns = 0;      ///< spent in pose optimisation
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  geometry::Matrix6d image_covariance = geometry::Matrix6d::Zero();  ///< without what a gyroscope adds
 };
 
 /// A feature of the frame with the world point it is taken for.
