@@ -76,7 +76,7 @@ TEST_F(SurfaceMotionTest, is_less_certain_before_a_wall_with_few_features) {
 TEST_F(SurfaceMotionTest, is_decided_by_a_known_rotation_before_a_wall_with_few_features) {
   std::vector<double> alone, known, resting;
   for (int i = 0; i < 20; ++i) {
-    const auto carried = make(60, {240, 160, 160, 160}, 1.5, {0.04, 0, 0}), still = make(60, {240, 160, 160, 160}, 1.5);
+    const auto carried = make(60, {240, 160, 160, 160}, 1.5, {0.03, 0, 0}), still = make(60, {240, 160, 160, 160}, 1.5);
     const auto wall = make(25, {0, 0, 640, 480}, 3.5);
     const auto without = compare(carried, wall), with = compare(carried, wall, known_rotation());
     const auto rests = compare(still, wall, known_rotation());
