@@ -2,8 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/run_session.hpp"
 
+#include <algorithm>
+
+#include "common/bus/topics.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/io/text.hpp"
+#include "common/ros2/names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/process/lost_lock.hpp"
 
@@ -142,7 +146,9 @@ milliseconds RunSession::interrupt_grace() const {
 /// Waits until the services that answer the first frame are connected, so that no answer is missed. If a service never
 /// appears, the camera names it.
 bool RunSession::camera_may_start(milliseconds time) const {
-  return collector_.connected(!setup_.replay.features) ||
+  // slam starts with transforms that the camera brings; the camera itself waits for slam before it plays.
+  const bool brings_transforms = std::ranges::count(setup_.beside, ros2::ros_topic(bus::topics::kTfStatic.name)) > 0;
+  return brings_transforms || collector_.connected(!setup_.replay.features) ||
          time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
 }
 
