@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -110,6 +111,15 @@ TEST_F(EndToEndTest, a_run_that_used_less_than_half_of_its_frames_is_no_success)
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("only 4 of 12 frames were used; 8 x color_unreadable: colour images are"),
                                    HasSubstr("12 given, 4 used, 4 with pose  (color_unreadable 8)")));
   EXPECT_NEAR(report()["coverage"], 1.0 / 3, 1e-9);
+}
+
+TEST_F(EndToEndTest, a_recording_brings_its_imu_and_its_transforms) {
+  const char* const data = std::getenv("RTD_DATA_DIR");
+  const fs::path recording = fs::path(data == nullptr ? "" : data) / "field/recording_with_imu_and_tf/imu_tf.mcap";
+  if (!fs::exists(recording)) GTEST_SKIP() << "RTD_DATA_DIR has no field/recording_with_imu_and_tf";
+  const std::vector<std::string> motion = {"--detector", "off", "--imu", "/camera/imu", "--camera-in-base", "tf"};
+  ASSERT_EQ(rtd_.run(arguments(118, "mcap:" + recording.string(), motion)), 0) << rtd_.output();
+  EXPECT_EQ(report()["frames_tracked"], 6);
 }
 
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
