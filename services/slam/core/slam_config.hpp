@@ -303,6 +303,7 @@ struct PriorConfig {
   double visual_factor = 4;
   double covered_share = 0.5;
   double covered_factor = 25;
+  bool known_rotation = false;
 
   void bind(auto& binder) {
     binder.field("max_sigma_m", max_sigma_m, {0.001, 10.0},
@@ -319,6 +320,7 @@ struct PriorConfig {
                  "against the expected one, and no keyframe is made of it");
     binder.field("covered_factor", covered_factor, {0.1, 1000.0},
                  "the factor for poses of covered views: what is left to be seen has the same errors for long");
+    binder.field("known_rotation", known_rotation, "the turn by the gyroscope is one more residual of every pose");
   }
   bool given() const { return imu || wheels; }
 };

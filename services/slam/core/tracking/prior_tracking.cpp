@@ -14,7 +14,7 @@ void Tracker::expect(const Frame& frame) {
   weighed_ = turned_ = false;
   if (prior_ == nullptr) return;
   expected_ = prior_->advance(frame.stamp_ns);
-  rotation_ = rotation_since_last(frame.stamp_ns);
+  rotation_ = config_.prior.known_rotation ? rotation_since_last(frame.stamp_ns) : std::nullopt;
 }
 
 /// Where the last frame has a pose. Its error and that of the gyroscope add up. docs/theory/inertial.md Eq. (15).
