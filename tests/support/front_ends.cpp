@@ -112,6 +112,7 @@ filter::FilterConfig filter_config(const FrontEndOptions& options) {
   service::ConfigBinder binder;
   binder.section("filter", config);
   if (is_filter_mode(options.mode)) binder.set("filter.mode=" + options.mode);
+  if (options.detector.masks != "off") binder.set("filter.techniques.person_masks=true");
   for (const std::string& setting : options.filter_settings) binder.set(setting);
   return config.core_config();
 }

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "common/msg/filter_modes.hpp"
-#include "services/filter/core/motion/motion_config.hpp"
 #include "services/filter/core/boxes/track_config.hpp"
+#include "services/filter/core/motion/motion_config.hpp"
 
 /// Every setting of the core: the member has the default, bind() below it key, range and help text
 /// (common/service/config.hpp). The defaults are the tested values.
@@ -21,7 +21,7 @@ using msg::FilterMode;
 struct Techniques {
   // What may move
   bool motion_levels = true, depth_masks = true, flat_objects = true, object_holes = true;
-  bool person_masks = true;
+  bool person_masks = false;  // more precise, but not more accurate: docs/lab/accuracy.md, "People as pixels"
   // What moves
   bool depth_check = true, feature_votes = true, look_back = true, arrivals = true, object_drift = true;
   bool noise_aware_tau = true, mover_memory = true, mover_tracks = true, surface_poses = true;
