@@ -187,7 +187,7 @@ vision::PersonMasks true_pixels(const camera::SourceFrame& frame, const Boxes& b
   return masks;
 }
 
-/// Every mask anew: a frame then has the same ones in every run.
+/// Every mask is computed, none moved with its box: a frame has the same ones in every run.
 LookAtPixels segmented_pixels(const std::string& model_path) {
   detector::MaskConfig config;
   config.model_path = model_path;
