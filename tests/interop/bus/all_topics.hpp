@@ -37,6 +37,7 @@ void for_each_topic(Visitor visit) {
   visit(kOdometry);
   visit(kPose);
   visit(kTf);
+  visit(kTfStatic);
   visit(kPath);
   visit(kMapPoints);
   visit(kDensePoints);
