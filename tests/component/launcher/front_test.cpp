@@ -48,7 +48,7 @@ TEST_F(FrontTest, help_of_a_run_names_every_engine_of_the_detector) {
 
 TEST_F(FrontTest, help_of_a_run_is_grouped_and_fits_a_terminal) {
   EXPECT_EQ(rtd_.run({"run", "--help"}), 0);
-  std::istringstream lines(rtd_.output());
+  std::istringstream lines(rtd_.printed());
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
   for (const char* group : {"Source:", "Results:", "Map:", "Robot:", "Network:", "Security:", "Advanced:", "Examples:"})
     EXPECT_THAT(rtd_.output(), HasSubstr(group));

@@ -58,14 +58,17 @@ class RtdCommand {
   /// Takes what it has printed; no other code does, and with a full pipe it would stand still.
   void take_output() { host_.wait(std::chrono::milliseconds(0)); }
   const std::string& output() const { return output_; }
+  /// The same with lines as they were printed.
+  const std::string& printed() const { return printed_; }
   process::ProcessId process() const { return process_; }
 
  private:
-  std::string executable_, command_, output_;
+  std::string executable_, command_, output_, printed_;
   process::ProcessId process_ = 0;
   /// A line that is continued below the one before is put behind it.
   void add(const std::string& line) {
     constexpr const char* kContinued = "      ";
+    printed_ += line + '\n';
     const bool continues = line.starts_with(kContinued) && output_.ends_with('\n');
     if (continues) output_.back() = ' ';
     output_ += (continues ? line.substr(line.find_first_not_of(' ')) : line) + '\n';

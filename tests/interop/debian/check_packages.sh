@@ -76,7 +76,7 @@ inside sh -c 'cd /tmp && rtd run --source "synthetic:office?frames=40" --out /tm
   >"$work/run.log" 2>&1 || fail "rtd run: $(cat "$work/run.log")"
 [ "$(inside grep -c '^[0-9]' /tmp/run/trajectory.txt)" -gt 30 ] || fail "poses of 40 frames: $(cat "$work/run.log")"
 inside systemd-analyze verify /usr/lib/systemd/system/rtd-slam@slam.service 2>&1 | grep rtd-slam && fail "unit of slam"
-inside python3 -c "import rtd_slam; assert len(rtd_slam.open('/tmp/run').poses) > 30" || fail "python3-rtd-slam"
+inside /usr/bin/python3 -c "import rtd_slam; assert len(rtd_slam.open('/tmp/run').poses) > 30" || fail "python3-rtd-slam"
 inside rtd-viewer --help >/dev/null || fail "rtd-viewer does not run"
 
 echo "RTD_COMMON_OPTIONS=--profile lan" >"$work/root/etc/rtd-slam/rtd-slam.conf"
