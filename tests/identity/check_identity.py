@@ -77,8 +77,8 @@ def base_odometry(rtd: str, data: pathlib.Path, out: pathlib.Path) -> str:
     run([rtd, "run", "--source", f"tum:{data / BASE_CLIP}", "--frames", "60", "--pace", "lockstep", "--filter", "rtd",
          "--detector", "off", "--quiet", "--out", str(out / "run"), "--record", recording,
          "--camera-in-base=0.1,0,0.4,-0.5,0.5,-0.5,0.5", "--domain", str(20 + os.getpid() % 60)], 300)
-    echoed = subprocess.run([rtd, "topics", "echo", recording, "/slam/odometry"], capture_output=True, timeout=120,
-                            check=True)
+    echoed = subprocess.run([rtd, "topics", "echo", "--verbose", recording, "/slam/odometry"],
+                            capture_output=True, timeout=120, check=True)
     return hashlib.sha256(echoed.stdout).hexdigest()
 
 
