@@ -8,7 +8,7 @@ import re
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
-SKIPPED_FOLDERS = {".git", "build", "shared", "node_modules", "__pycache__"}
+SKIPPED_FOLDERS = {".git", "build", "rtd-demo", "shared", "node_modules", "__pycache__"}
 TOP_FOLDERS = ("common", "config", "deploy", "docs", "idl", "services", "tests")
 SOURCE_SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".py", ".sh", ".mjs", ".cmake", ".idl", ".md", ".supp")
 MAX_LINE = 120
