@@ -15,7 +15,6 @@ namespace {
 
 constexpr const char* kSeparators = " \t\r\v\f,;";
 constexpr std::size_t kTumColumns = 8, kMatrixColumns = 13, kFullMatrixColumns = 17, kAssociationColumns = 12;
-constexpr double kMaxRotationError = 0.01;
 
 /// A value of nan or infinity: the row says that nothing was measured.
 class NotFinite : public std::invalid_argument {
@@ -30,14 +29,12 @@ double finite(const std::string& field) {
   return *value;
 }
 
-Eigen::Isometry3d matrix_pose(std::span<const std::string> fields) {
+Eigen::Isometry3d parse_matrix(std::span<const std::string> fields) {
   Eigen::Matrix<double, 3, 4> rows;
   for (Eigen::Index i = 0; i < rows.size(); ++i) rows(i / 4, i % 4) = finite(fields[static_cast<std::size_t>(i)]);
-  const Eigen::Matrix3d R = rows.leftCols<3>();
-  const double error = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= kMaxRotationError) || R.determinant() < 0)
-    throw std::invalid_argument("its columns 2 to 13 are no pose: there is no rotation matrix in them");
-  return make_pose(rows.col(3), Eigen::Quaterniond(R));
+  const std::optional<Eigen::Isometry3d> pose = matrix_pose(rows);
+  if (!pose) throw std::invalid_argument("its columns 2 to 13 are no pose: there is no rotation matrix in them");
+  return *pose;
 }
 
 Eigen::Isometry3d quaternion_pose(std::span<const std::string> fields) {
@@ -59,7 +56,7 @@ Row parse_row(const std::vector<std::string>& all) {
   finite(stamp);
   const auto pose = fields.subspan(1);
   if (fields.size() == kTumColumns) return {stamp, quaternion_pose(pose)};
-  if (fields.size() == kMatrixColumns || fields.size() == kFullMatrixColumns) return {stamp, matrix_pose(pose)};
+  if (fields.size() == kMatrixColumns || fields.size() == kFullMatrixColumns) return {stamp, parse_matrix(pose)};
   throw std::invalid_argument(std::to_string(fields.size()) + " columns instead of 8 (stamp tx ty tz qx qy qz qw)");
 }
 
@@ -160,6 +157,14 @@ std::string rows_text(std::size_t rows, const char* what) {
 }
 
 }  // namespace
+
+std::optional<Eigen::Isometry3d> matrix_pose(const Eigen::Matrix<double, 3, 4>& rows) {
+  constexpr double kMaxError = 0.01;
+  const Eigen::Matrix3d R = rows.leftCols<3>();
+  const double error = (R * R.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= kMaxError) || R.determinant() < 0) return std::nullopt;
+  return make_pose(rows.col(3), Eigen::Quaterniond(R));
+}
 
 std::string stamp_in_name(const std::string& text) {
   if (io::parse_number(text)) return text;

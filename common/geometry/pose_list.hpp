@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,9 @@ struct PoseList {
 PoseList read_pose_list(const std::string& text, const std::string& name);
 /// Of a file.
 PoseList read_pose_list(const std::filesystem::path& path);
+
+/// The pose of the upper 3 x 4 of its matrix; empty where its left part is no rotation matrix (to 0.01).
+std::optional<Eigen::Isometry3d> matrix_pose(const Eigen::Matrix<double, 3, 4>& rows);
 
 /// The number that a name of an image file is, as "12.5" of "rgb/12.5.png"; the text itself where it is a number.
 std::string stamp_in_name(const std::string& text);

@@ -61,6 +61,8 @@ class FilterService {
   };
   using Prepared = concurrency::BoundedQueue<Work>;
 
+  static constexpr std::int64_t kPatienceNs = 1'500'000'000;  ///< before a silent heartbeat ends a wait
+
   void prepare_frames();
   std::optional<Work> next_frame();
   void process(Work work);

@@ -133,15 +133,13 @@ std::string error_section(const RunSummary& summary, const RunTime& time) {
 
 std::vector<std::string> doubtful_row(std::vector<run_record::FrameRecord>::const_iterator begin,
                                       std::vector<run_record::FrameRecord>::const_iterator end, const RunTime& time) {
-  const auto seconds = [&](const run_record::FrameRecord& frame) {
-    return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;
-  };
+  const double from_s = source_time_s(*begin, time);
   const auto range = [&](auto member) {
     const auto [least, most] = std::minmax_element(
         begin, end, [&](const auto& a, const auto& b) { return a.tracking.*member < b.tracking.*member; });
     return fmt::format("{} to {}", (*least).tracking.*member, (*most).tracking.*member);
   };
-  return {fmt::format("{:.2f} s", seconds(*begin)), fmt::format("{:.2f} s", seconds(*(end - 1)) - seconds(*begin)),
+  return {fmt::format("{:.2f} s", from_s), fmt::format("{:.2f} s", source_time_s(*(end - 1), time) - from_s),
           fmt::format("{} to {}", begin->tracking.seq, (end - 1)->tracking.seq), range(&msg::TrackingResult::inliers),
           range(&msg::TrackingResult::features_removed)};
 }

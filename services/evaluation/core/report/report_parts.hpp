@@ -18,6 +18,8 @@ struct RunTime {
   double duration_s = 0;      ///< to the last frame, source time
 };
 RunTime run_time(const Run& run, const RunSummary& summary);
+/// Of a frame, since the first one.
+double source_time_s(const run_record::FrameRecord& frame, const RunTime& time);
 /// The ground truth of that time.
 Trajectory truth_during(const RunSummary& summary, const RunTime& time);
 

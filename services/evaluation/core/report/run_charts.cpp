@@ -23,10 +23,6 @@ namespace palette = plot::palette;
 constexpr double kChartWidth = 1080;
 constexpr std::size_t kMaxColumns = 700;  // more values are averaged: a chart has no more columns
 
-double source_time_s(const run_record::FrameRecord& frame, const RunTime& time) {
-  return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;
-}
-
 /// Per-frame values over time, averaged to at most kMaxColumns.
 struct FeatureSeries {
   std::vector<double> time_s, kept, total, inliers;
@@ -150,6 +146,10 @@ std::string caption(const run_record::SampleFrame& sample) {
 }
 
 }  // namespace
+
+double source_time_s(const run_record::FrameRecord& frame, const RunTime& time) {
+  return static_cast<double>(frame.tracking.stamp_ns - time.start_ns) * 1e-9;
+}
 
 RunTime run_time(const Run& run, const RunSummary& summary) {
   if (!run.frames.empty()) {

@@ -73,17 +73,14 @@ void for_each_line(const std::string& text, const std::string& name, const char*
 }
 
 Eigen::Isometry3d kitti_pose(const std::vector<std::string>& fields) {
-  constexpr double kMaxError = 0.01;
   if (fields.size() != kKittiColumns && fields.size() != kFullMatrixColumns)
     throw std::invalid_argument(std::to_string(fields.size()) + " numbers instead of 12 (the upper 3 x 4 of a pose)");
   Eigen::Matrix<double, 3, 4> rows;
   for (std::size_t i = 0; i < kKittiColumns; ++i)
     rows(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = number(fields[i]);
-  const Eigen::Matrix3d rotation = rows.leftCols<3>();
-  const double error = (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= kMaxError) || rotation.determinant() < 0)
-    throw std::invalid_argument("columns 1 to 3, 5 to 7 and 9 to 11 are no rotation matrix");
-  return geometry::make_pose(rows.col(3), Eigen::Quaterniond(rotation));
+  const std::optional<Eigen::Isometry3d> pose = geometry::matrix_pose(rows);
+  if (!pose) throw std::invalid_argument("columns 1 to 3, 5 to 7 and 9 to 11 are no rotation matrix");
+  return *pose;
 }
 
 /// Where a csv file has its values.
