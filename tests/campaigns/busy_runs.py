@@ -31,7 +31,7 @@ def arguments():
                              "the run")
     parser.add_argument("--compare", action="store_true", help="each run also without the browser, in turn")
     parser.add_argument("--runs", default=3, type=int, help="(%(default)s)")
-    parser.add_argument("--domain", default=141, type=int, help="DDS domain (%(default)s)")
+    parser.add_argument("--domain", default=84, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
     return parser.parse_args()
 

@@ -45,7 +45,7 @@ def arguments():
     parser.add_argument("--services", default=",".join(SERVICES),
                         help="which ones are killed and stopped (%(default)s); detector needs its weights")
     parser.add_argument("--dds", default="fastdds", help="(%(default)s)")
-    parser.add_argument("--domain", default=143, type=int, help="DDS domain (%(default)s)")
+    parser.add_argument("--domain", default=83, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("--seed", default=1, type=int, help="(%(default)s)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
     args = parser.parse_args()

@@ -12,7 +12,7 @@ tools="$root/build/release/viewers" port=8799
 
 mkdir -p "$folder"
 work="$(mktemp -d)"
-"$root/build/release/bin/rtd" run --source "$source" --pace realtime --out "$work/out" --domain 173 --viewer --set viewer.port=$port --set viewer.token=pictures \
+"$root/build/release/bin/rtd" run --source "$source" --pace realtime --out "$work/out" --domain 93 --viewer --set viewer.port=$port --set viewer.token=pictures \
   >"$work/log" 2>&1 &
 run=$!
 trap 'kill $run 2>/dev/null || true; wait $run 2>/dev/null || true; rm -rf "$work"' EXIT

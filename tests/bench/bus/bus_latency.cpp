@@ -23,6 +23,7 @@
 #include "common/bus/frame_topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "tests/support/frame_header.hpp"
+#include "tests/support/test_domain.hpp"
 
 extern char** environ;
 
@@ -153,7 +154,7 @@ void run(int messages, std::uint32_t domain) {
 }  // namespace rtd::bus
 
 int main(int argc, char** argv) {
-  const auto domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+  const auto domain = rtd::test_domain();
   if (argc == 3 && std::string(argv[1]) == "--answer")
     return rtd::bus::answer(static_cast<std::uint32_t>(std::atoi(argv[2])));
   std::string self = "/proc/self/exe", role = "--answer", domain_text = std::to_string(domain);

@@ -27,6 +27,7 @@
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "tests/support/frame_header.hpp"
+#include "tests/support/test_domain.hpp"
 
 extern char** environ;
 
@@ -38,7 +39,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   std::string vendor = BusOptions{}.vendor;
-  std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+  std::uint32_t domain = test_domain();
   int restarts = 50;
   int max_gap_ms = 1000;
   bool publisher = false;  ///< the process that is killed

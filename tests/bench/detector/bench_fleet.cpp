@@ -21,6 +21,7 @@
 #include "common/service/log.hpp"
 #include "services/detector/fleet_service.hpp"
 #include "tests/support/fleet/robot_double.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace {
 
@@ -36,7 +37,7 @@ struct Options {
 };
 
 /// DDS domain of a robot behind a link; others are in that of the box.
-constexpr int kFirstLinkedDomain = 200;
+constexpr int kFirstLinkedDomain = 62;
 int domain_of_robot(const Options& options, int id) {
   return options.link.empty() ? options.domain : kFirstLinkedDomain + id;
 }
@@ -163,7 +164,7 @@ int run(Options options) {
 
 int main(int argc, char** argv) {
   Options options;
-  options.domain = 100 + static_cast<int>(getpid()) % 100;
+  options.domain = test_domain();
   CLI::App app{"One detector for several robots, in processes of their own", "bench_fleet"};
   app.add_option("--role", options.role)->group("");
   app.add_option("--id", options.id)->group("");

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "tests/support/test_domain.hpp"
 
 extern char** environ;
 
@@ -49,11 +50,6 @@ class PeerProcess {
 
   pid_t pid_ = 0;
 };
-
-/// A domain of this process's own, so that tests can run side by side.
-inline std::uint32_t test_domain() {
-  return 100 + static_cast<std::uint32_t>(getpid()) % 100;
-}
 
 /// A connection to that domain.
 inline std::shared_ptr<Bus> connect_to(const std::string& vendor) {

@@ -14,6 +14,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "services/camera/camera_service.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::camera::test {
 
@@ -21,7 +22,7 @@ namespace rtd::camera::test {
 class CameraOnBus : public ::testing::TestWithParam<std::string> {
  protected:
   explicit CameraOnBus(const std::string& source) {
-    static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    static std::uint32_t domain = test_domain();
     options_.vendor = GetParam();
     options_.domain = domain++;
     bus_ = bus::connect(options_);

@@ -16,6 +16,7 @@
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/fleet/robot_double.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -30,7 +31,7 @@ class FleetProcess : public ::testing::Test {
  protected:
   FleetProcess() {
     options_.vendor = "fastdds";
-    options_.domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    options_.domain = test_domain();
     std::filesystem::create_directories(folder_);
     write_model({.free_batch = true});
   }

@@ -19,6 +19,7 @@
 #include "services/detector/fleet_service.hpp"
 #include "tests/support/fleet/robot_double.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -31,7 +32,7 @@ using ::testing::HasSubstr;
 bus::BusOptions loopback() {
   bus::BusOptions options;
   options.vendor = "fastdds";
-  options.domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+  options.domain = test_domain();
   options.participant_name = "fleet-test";
   return options;
 }

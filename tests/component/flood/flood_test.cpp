@@ -34,7 +34,7 @@ class FloodTest : public testing::TestWithParam<std::string> {
     return {"run",      "--source", source,   "--out",      out,   "--dds",
             GetParam(), "--domain", domain(), "--detector", "off", "--dense"};
   }
-  static std::string domain() { return GetParam() == "fastdds" ? "161" : "162"; }
+  static std::string domain() { return GetParam() == "fastdds" ? "81" : "82"; }
 
   Outcome run(bool attacked) {
     const std::string out = scratch_ / (attacked ? "attacked" : "quiet");

@@ -135,7 +135,7 @@ TEST_F(EndToEndTest, a_second_run_into_the_same_folder_is_refused_and_deletes_no
   EXPECT_EQ(second.run(arguments(133, "synthetic:office?frames=5")), 2);
   EXPECT_THAT(second.output(),
               AllOf(HasSubstr("--out " + out_), HasSubstr("process " + pid), HasSubstr("another folder")));
-  EXPECT_EQ(ablation.run({"ablate", "--source", "synthetic:office?frames=5", "--out", out_, "--domain", "133"}), 2);
+  EXPECT_EQ(ablation.run({"ablate", "--source", "synthetic:office?frames=5", "--out", out_, "--domain", "73"}), 2);
   EXPECT_THAT(ablation.output(), HasSubstr("process " + pid));
   EXPECT_TRUE(fs::exists(out_ + "/logs/slam.log"));
   rtd_.interrupt();
@@ -163,7 +163,7 @@ TEST_F(EndToEndTest, a_run_whose_output_is_not_read_continues_to_its_report) {
   RtdCommand shell("/bin/sh");
   const std::string rtd = RTD_EXECUTABLE;
   const std::string run =
-      rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 134 --out " + out_;
+      rtd + " run --source 'synthetic:office?frames=20' --pace lockstep --detector off --domain 74 --out " + out_;
   ASSERT_EQ(shell.run({"-c", "{ " + run + " 2>&1; echo $? >" + out_ + "/code; } | head -1"}), 0) << shell.output();
   EXPECT_EQ(text_of(out_ + "/code"), "0\n");
   EXPECT_EQ(report()["frames_in"], 20);
@@ -282,10 +282,10 @@ TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_f
   rtd_.start(arguments(128, "synthetic:office?frames=60", {"--detector", "off", "--pace", "lockstep"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   RtdCommand second;
-  EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "128", "--out", scratch_ / "second"}), 2);
+  EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "68", "--out", scratch_ / "second"}), 2);
   // The launcher sees it, or, on a busy host where no message of the first arrives in time, the service that starts.
   EXPECT_THAT(second.output(),
-              AllOf(AnyOf(HasSubstr("domain 128 is taken by"), HasSubstr("already runs in DDS domain 128")),
+              AllOf(AnyOf(HasSubstr("domain 68 is taken by"), HasSubstr("already runs in DDS domain 68")),
                     HasSubstr("--domain")));
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_EQ(report()["frames_tracked"], 60);
@@ -293,7 +293,7 @@ TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_f
 
 TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   unsetenv("RTD_DATA_DIR");
-  EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "127"}), 0) << rtd_.output();
+  EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "67"}), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("synthetic:office"), HasSubstr("every point (--filter off)"),
                                    HasSubstr("static points (--filter rtd)"), HasSubstr("next:")));
   EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("<svg"));

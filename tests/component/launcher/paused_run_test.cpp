@@ -63,7 +63,7 @@ class PausedRun : public testing::TestWithParam<std::string> {
 TEST_P(PausedRun, continues_with_all_services_and_the_same_map) {
   for (const std::string& pace : paces()) {
     out_ = scratch_ / pace;
-    rtd_.start({"run", "--source", "synthetic:office?frames=150", "--out", out_, "--domain", "137", "--detector", "off",
+    rtd_.start({"run", "--source", "synthetic:office?frames=150", "--out", out_, "--domain", "77", "--detector", "off",
                 "--pace", pace, "--dds", GetParam()});
     ASSERT_TRUE(wait_for_log("slam", "event=map_started")) << rtd_.output();
     stop_everything_for_a_while();

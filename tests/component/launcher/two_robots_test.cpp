@@ -18,7 +18,7 @@ class TwoRobots : public testing::TestWithParam<const char*> {
 
   std::vector<std::string> arguments(const std::string& source, const std::string& out,
                                      const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {"run",   "--source", source,   "--out",    scratch_ / out, "--domain", "136",
+    std::vector<std::string> all = {"run",   "--source", source,   "--out",    scratch_ / out, "--domain", "76",
                                     "--dds", GetParam(), "--pace", "lockstep", "--detector",   "off"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
@@ -60,7 +60,7 @@ TEST_P(TwoRobots, of_one_name_are_refused) {
   first.start(arguments("synthetic:office?frames=0", "first", {"--robot", "anna"}));
   ASSERT_TRUE(first.wait_for("inliers")) << first.output();
   EXPECT_EQ(second.run(arguments(kAnnaSees, "second", {"--robot", "anna"})), 2) << second.output();
-  EXPECT_THAT(second.output(), HasSubstr("robot 'anna' in DDS domain 136 has"));
+  EXPECT_THAT(second.output(), HasSubstr("robot 'anna' in DDS domain 76 has"));
   EXPECT_EQ(third.run(arguments(kAnnaSees, "third", {"--robot", "bert"})), 0) << third.output();
   first.interrupt();
   EXPECT_EQ(first.wait(), 130) << first.output();

@@ -82,7 +82,7 @@ class UnpluggedCamera : public ::testing::Test {
  protected:
   UnpluggedCamera() {
     options_.vendor = "fastdds";
-    options_.domain = 168;
+    options_.domain = 88;
     bus_ = bus::connect(options_);
     poses_reader_ = bus_->reader<msg::PoseStamped>(bus::topics::kPose, [this](auto pose) { poses_.take(pose); });
     statuses_reader_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto status) {
@@ -117,7 +117,7 @@ TEST_F(UnpluggedCamera, again_and_again_brings_poses_back_within_two_seconds_and
   Room room;
   auto device = std::make_unique<RealsenseDouble>(options_, room.script());
   RtdCommand rtd;
-  rtd.start({"run", "--source", "realsense-dds:?width=320&height=240", "--out", scratch_ / "out", "--domain", "168",
+  rtd.start({"run", "--source", "realsense-dds:?width=320&height=240", "--out", scratch_ / "out", "--domain", "88",
              "--detector", "off"});
   const bool began = poses_come(30);
   rtd.take_output();

@@ -17,7 +17,7 @@ using launcher::RtdCommand;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr std::uint32_t kRobotDomain = 138, kFleetDomain = 139;
+constexpr std::uint32_t kRobotDomain = 78, kFleetDomain = 79;
 
 std::vector<std::string> link_arguments(const std::string& robot, int fleet,
                                         const std::vector<std::string>& more = {}) {
@@ -109,7 +109,7 @@ TEST(LinkProcess, a_second_link_of_one_robot_is_refused) {
   RtdCommand first, second;
   first.start(link_arguments("anna", kFleetDomain));
   ASSERT_TRUE(first.wait_for("event=linked")) << first.output();
-  EXPECT_EQ(second.run({"link", "--robot", "anna", "--domain", "137", "--fleet", std::to_string(kFleetDomain)}), 4)
+  EXPECT_EQ(second.run({"link", "--robot", "anna", "--domain", "77", "--fleet", std::to_string(kFleetDomain)}), 4)
       << "of another robot with the name";
   EXPECT_THAT(second.output(), HasSubstr("robot 'anna' already has a link"));
   first.interrupt();
@@ -123,7 +123,7 @@ TEST(LinkProcess, says_what_is_missing_or_wrong) {
     return rtd.output();
   };
   EXPECT_THAT(refusal(link_arguments("", kFleetDomain)), HasSubstr("--robot NAME"));
-  EXPECT_THAT(refusal(link_arguments("anna", kRobotDomain)), HasSubstr("the robot is in domain 138 itself"));
+  EXPECT_THAT(refusal(link_arguments("anna", kRobotDomain)), HasSubstr("the robot is in domain 78 itself"));
   EXPECT_THAT(refusal({"link", "--robot", "anna"}), HasSubstr("--fleet DOMAIN"));
   EXPECT_THAT(refusal(link_arguments("anna", kFleetDomain, {"--topics", "rtd/frame"})),
               HasSubstr("never leave their host"));

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/test_domain.hpp"
+
 extern char** environ;
 
 namespace rtd::recorder {
@@ -61,10 +63,5 @@ class RecorderProcess {
 
   pid_t pid_ = 0;
 };
-
-/// A domain of this process's own, so that tests can run side by side.
-inline std::uint32_t test_domain() {
-  return 100 + static_cast<std::uint32_t>(getpid()) % 100;
-}
 
 }  // namespace rtd::recorder

@@ -15,6 +15,7 @@
 #include "common/msg/rgbd_frame.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/component/replay/raw_recording.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -24,7 +25,7 @@ constexpr std::int64_t kMillisecond = 1'000'000, kEpoch = 1'700'000'000'000'000'
 class ReplayProcessTest : public testing::Test {
  protected:
   ReplayProcessTest() {
-    options_.domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    options_.domain = test_domain();
     options_.participant_name = "replay-test";
     raw_ = bus::connect_raw(options_);
   }

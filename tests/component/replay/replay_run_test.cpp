@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -23,7 +24,7 @@ class ReplayRunTest : public testing::Test {
     return all;
   }
 
-  const std::string domain_ = std::to_string(100 + getpid() % 100);
+  const std::string domain_ = std::to_string(test_domain());
   launcher::ScratchFolder scratch_;
   const std::string file_ = scratch_ / "run.mcap";
 };

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "common/security/keystore.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::security {
 namespace {
@@ -103,7 +104,7 @@ void PeerGroup::start(const std::string& tag, const std::string& keystore, const
                       const std::string& vendor) {
   std::vector<std::string> command = {"/usr/bin/env"};
   command.insert(command.end(), environment.begin(), environment.end());
-  const std::string domain = std::to_string(100 + getpid() % 100);
+  const std::string domain = std::to_string(test_domain());
   command.insert(command.end(), {SECURE_PEER_PATH, vendor.empty() ? vendor_ : vendor, domain, keystore, enclave, tag});
   command.insert(command.end(), topics.begin(), topics.end());
   processes_.push_back(host_.start({tag, command}));

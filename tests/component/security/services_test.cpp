@@ -15,6 +15,7 @@
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/component/security/endpoint_census.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -51,7 +52,7 @@ class SecuredServicesTest : public ::testing::Test {
     return false;
   }
 
-  const std::uint32_t domain_ = 130 + static_cast<std::uint32_t>(getpid()) % 60;
+  const std::uint32_t domain_ = test_domain();
   ScratchFolder scratch_;
   RtdCommand rtd_;
 };

@@ -20,6 +20,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/runtime.hpp"
+#include "tests/support/test_domain.hpp"
 
 extern char** environ;
 
@@ -31,7 +32,7 @@ using Clock = std::chrono::steady_clock;
 
 class Health : public ::testing::TestWithParam<std::string> {
  protected:
-  static std::uint32_t domain() { return 100 + static_cast<std::uint32_t>(getpid()) % 100; }
+  static std::uint32_t domain() { return test_domain(); }
   std::shared_ptr<bus::Bus> join() const {
     bus::BusOptions options;
     options.vendor = GetParam();

@@ -50,7 +50,7 @@ def main():
     journal.bind(str(FOLDER / "socket"))
     with tempfile.TemporaryFile() as stderr:
         status = os.fstat(stderr.fileno())
-        service = subprocess.Popen([sys.argv[1], "--domain", "139"], stderr=stderr,
+        service = subprocess.Popen([sys.argv[1], "--domain", "80"], stderr=stderr,
                                    env={**os.environ, "JOURNAL_STREAM": f"{status.st_dev}:{status.st_ino}"})
         try:
             got = lines_of(journal, "RTD_EVENT=started")
@@ -58,7 +58,7 @@ def main():
             service.send_signal(signal.SIGTERM)
             service.wait(PATIENCE_S)
         started = next(line for line in got if "RTD_EVENT=started" in line)
-        for field in ("SYSLOG_IDENTIFIER=rtd-slam", "PRIORITY=6", "RTD_DOMAIN=139", f"RTD_PID={service.pid}"):
+        for field in ("SYSLOG_IDENTIFIER=rtd-slam", "PRIORITY=6", "RTD_DOMAIN=80", f"RTD_PID={service.pid}"):
             if field not in started:
                 sys.exit(f"FAILED: no {field} in {started}")
         stderr.seek(0)

@@ -15,6 +15,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/topics.hpp"
 #include "common/service/exit_code.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::topics {
 namespace {
@@ -28,7 +29,7 @@ using ::testing::StartsWith;
 class Topics : public ::testing::TestWithParam<std::string> {
  protected:
   Topics() {
-    static std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+    static std::uint32_t domain = test_domain();
     options_.vendor = GetParam();
     options_.domain = domain++;
     choose_domain(options_.domain);

@@ -17,6 +17,7 @@
 #include "tests/fuzz/rtps/datagram_seeds.hpp"
 #include "tests/fuzz/rtps/service_run.hpp"
 #include "tests/fuzz/rtps/udp_target.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::fuzz {
 namespace {
@@ -109,7 +110,7 @@ class FuzzRtps : public ::testing::TestWithParam<std::string> {
     return sent;
   }
 
-  const std::uint32_t domain_ = 150 + static_cast<std::uint32_t>(getpid()) % 40;
+  const std::uint32_t domain_ = test_domain();
   std::uint64_t sound_ = 0;  ///< of those sent: with the frame of an RTPS message, malformed within
   std::mt19937_64 random_{number("RTD_FUZZ_SEED", 1)};
 };

@@ -17,6 +17,7 @@
 #include "tests/component/bus/collector.hpp"
 #include "tests/interop/bus/all_topics.hpp"
 #include "tests/interop/bus/talking_process.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::bus::interop {
 namespace {
@@ -97,7 +98,7 @@ int rounds() {
 
 class VendorMatrix : public testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
-  const std::uint32_t domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+  const std::uint32_t domain = test_domain();
 
   std::shared_ptr<Bus> connect_reading() const {
     BusOptions options;

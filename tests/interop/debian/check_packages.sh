@@ -72,7 +72,7 @@ cp "$work"/1/*.deb "$work/root/packages/"
 inside sh -c 'dpkg -i /packages/*.deb' >"$work/dpkg.log" 2>&1 || fail "installation: $(cat "$work/dpkg.log")"
 inside getent passwd rtd-slam >/dev/null || fail "no account rtd-slam"
 inside rtd version | grep -q . || fail "rtd does not run"
-inside sh -c 'cd /tmp && rtd run --source "synthetic:office?frames=40" --out /tmp/run --domain 137 --quiet --detector off' \
+inside sh -c 'cd /tmp && rtd run --source "synthetic:office?frames=40" --out /tmp/run --domain 77 --quiet --detector off' \
   >"$work/run.log" 2>&1 || fail "rtd run: $(cat "$work/run.log")"
 [ "$(inside grep -c '^[0-9]' /tmp/run/trajectory.txt)" -gt 30 ] || fail "poses of 40 frames: $(cat "$work/run.log")"
 inside systemd-analyze verify /usr/lib/systemd/system/rtd-slam@slam.service 2>&1 | grep rtd-slam && fail "unit of slam"

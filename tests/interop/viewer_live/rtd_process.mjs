@@ -7,7 +7,7 @@ import { spawn } from "node:child_process";
 import { setTimeout as sleep } from "node:timers/promises";
 
 const kRtd = process.env.RTD_EXECUTABLE;
-export const kDomain = process.env.RTD_TEST_DOMAIN ?? "172";
+export const kDomain = process.env.RTD_TEST_DOMAIN ?? "92";
 
 export class Service {
   constructor(name, ...args) {

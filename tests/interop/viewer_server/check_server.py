@@ -30,7 +30,7 @@ except ImportError:
     sys.exit(77)
 
 RTD = sys.argv.pop(1)
-DOMAIN = os.environ.get("RTD_TEST_DOMAIN", "171")
+DOMAIN = os.environ.get("RTD_TEST_DOMAIN", "91")
 FOXGLOVE, PAGE = "foxglove.sdk.v1", "rtd.viewer.v1"
 
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDomain = 187;
+constexpr int kDomain = 95;
 
 class ParticipantId : public testing::Test {
  protected:

@@ -12,6 +12,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
 #include "tests/bench/rtd_bench/transport/transport_bench.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::bench {
 namespace {
@@ -32,7 +33,7 @@ void add_measuring_options(CLI::App& command, TransportOptions& options) {
 
 int run_bench(TransportRequest& request) {
   TransportOptions& options = request.options;
-  if (options.domain == 0) options.domain = 100 + static_cast<std::uint32_t>(getpid()) % 100;
+  if (options.domain == 0) options.domain = test_domain();
   if (!request.payloads.empty()) options.payloads.clear();
   for (const std::string& name : request.payloads) options.payloads.push_back(*parse_payload(name));
   service::Progress progress(std::cerr, "cases", transport_cases(options).size());
