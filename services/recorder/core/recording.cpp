@@ -133,24 +133,33 @@ Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicBook& bo
   file_.bytes = sink_->position();
 }
 
+std::uint64_t Recording::log_time(const QueuedMessage& message) {
+  constexpr std::uint64_t kLongestRepairNs = 2'000'000'000;  // beyond: the clock was set back
+  if (logged_ns_.size() <= message.topic) logged_ns_.resize(message.topic + 1);
+  std::uint64_t& last_ns = logged_ns_[message.topic];
+  const bool repaired = message.received_ns < last_ns && last_ns - message.received_ns <= kLongestRepairNs;
+  return last_ns = repaired ? last_ns : message.received_ns;
+}
+
 void Recording::write(const QueuedMessage& message, std::int64_t now_ns) {
   const io::ByteView data = message.bytes->view();
+  const std::uint64_t log_ns = log_time(message);
   const bool chunk_full =
       writer_.open_chunk_messages() > 0 && writer_.open_chunk_bytes() + data.size() > options_.chunk_bytes;
   if (chunk_full) end_chunk();
   const std::uint64_t file_bytes = file_.bytes + writer_.open_chunk_bytes();
-  if (file_.messages > 0 && !options_.split.has_room(file_bytes, data.size(), file_.first_ns, message.received_ns)) {
+  if (file_.messages > 0 && !options_.split.has_room(file_bytes, data.size(), file_.first_ns, log_ns)) {
     begin_next_file();
   }
-  writer_.write(mcap::Message{channel(message.topic), message.sequence, message.received_ns, message.source_ns, data});
+  writer_.write(mcap::Message{channel(message.topic), message.sequence, log_ns, message.source_ns, data});
   if (messages_.size() <= message.topic) messages_.resize(message.topic + 1);
   ++messages_[message.topic];
   book_.count(message.topic, [&](TopicCounts& counts) {
     ++counts.written;
     counts.written_bytes += data.size();
   });
-  if (file_.messages++ == 0) file_.first_ns = message.received_ns;
-  file_.last_ns = std::max(file_.last_ns, message.received_ns);
+  if (file_.messages++ == 0) file_.first_ns = log_ns;
+  file_.last_ns = std::max(file_.last_ns, log_ns);
   if (!chunk_begun_ns_) chunk_begun_ns_ = now_ns;
   if (writer_.open_chunk_bytes() >= options_.chunk_bytes) end_chunk();
 }

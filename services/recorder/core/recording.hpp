@@ -96,6 +96,9 @@ class Recording {
 
  private:
   mcap::ChannelId channel(std::size_t topic);
+  /// When it was received, but not before the message of its topic that was delivered before it: the next ones may have
+  /// been received while a lost one was sent again, and MCAP files are read in the order of these times.
+  std::uint64_t log_time(const QueuedMessage& message);
   void end_chunk();
   void begin_next_file();
 
@@ -107,7 +110,8 @@ class Recording {
   mcap::Writer writer_;
   std::map<std::size_t, mcap::ChannelId> channels_;
   std::map<std::string, mcap::SchemaId> schemas_;
-  std::vector<std::uint64_t> messages_;  ///< by topic, with the open chunk
+  std::vector<std::uint64_t> messages_;   ///< by topic, with the open chunk
+  std::vector<std::uint64_t> logged_ns_;  ///< by topic, of its last message
   std::vector<FileSummary> ended_files_;
   FileSummary file_;
   std::uint64_t bytes_before_ = 0;  ///< of ended files

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// kill -9 while recording: nothing that was acknowledged is lost. RTD_KILL_RUNS=200 for the long campaign.
+// kill -9 while recording: nothing that was acknowledged is lost. RTD_KILL_RUNS=200 for the long campaign (3 min).
 #include <gtest/gtest.h>
 
 #include <atomic>

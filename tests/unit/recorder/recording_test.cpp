@@ -98,6 +98,26 @@ TEST_F(RecordingTest, messages_are_acknowledged_when_their_chunk_is_ended) {
   EXPECT_EQ(sync_.acknowledged().bytes, disks_[0]->position());
 }
 
+TEST_F(RecordingTest, keeps_the_order_of_delivery_when_a_lost_message_was_sent_again) {
+  const std::size_t pose = book_.find_or_add("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
+  const std::size_t path = book_.find_or_add("rt/slam/path", "nav_msgs::msg::dds_::Path_");
+  begin();
+  const std::uint64_t start = 60'000'000'000;
+  recording_->write(message(pose, 10, start + 124 * kMs), 0);  // delivered first, but received last: lost once
+  recording_->write(message(pose, 10, start), 0);
+  recording_->write(message(path, 10, start + 1), 0);
+  recording_->write(message(pose, 10, start + 130 * kMs), 0);
+  recording_->write(message(pose, 10, start - 3'000 * kMs), 0);  // the clock was set back
+  recording_->finish({});
+
+  const io::MemorySource source(disks_[0]->bytes());
+  mcap::IndexedReader reader(source);
+  mcap::MessageCursor cursor = reader.messages();
+  std::vector<std::uint32_t> order;
+  while (const mcap::Message* read = cursor.next()) order.push_back(read->sequence);
+  EXPECT_EQ(order, (std::vector<std::uint32_t>{5, 3, 1, 2, 4}));
+}
+
 TEST_F(RecordingTest, says_what_ros2_tools_look_for) {
   const std::size_t pose = book_.find_or_add("rt/slam/pose", "geometry_msgs::msg::dds_::PoseStamped_");
   const std::size_t thing = book_.find_or_add("rtd/thing", "Thing");
