@@ -17,6 +17,12 @@ namespace rtd::bus {
 /// domain, 7410 + 250 * domain + 2 * id. On a network every participant of ours takes the first free one of them.
 inline constexpr int kPeerParticipants = 16;
 
+/// Why a vendor may refuse to join a domain.
+inline constexpr char kMayBeRefused[] =
+    "is the loopback interface up (ip link set lo up), are fewer than 60 participants in this domain, and does no "
+    "other "
+    "program hold its ports (ss -ulpn)? Above domain 101 Linux lends them to any program";
+
 /// An IPv4 address; port 0: the discovery ports of the domain's first kPeerParticipants participants.
 struct HostAddress {
   std::string address;
@@ -31,8 +37,8 @@ HostAddress resolve_host(const std::string& text, const std::string& option);
 /// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
 std::vector<std::string> interface_addresses(const NetworkOptions& network);
 
-/// Topics of any robot that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their writers on a
-/// network are in the partition host_partition() only, our readers ask for it and for the default one.
+/// Topics of any robot that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their
+/// writers on a network are in the partition host_partition() only, our readers ask for it and for the default one.
 bool stays_on_host(std::string_view topic);
 
 /// The same text for all processes that share memory, another one elsewhere: "host-0123456789abcdef".

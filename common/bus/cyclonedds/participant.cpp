@@ -91,8 +91,7 @@ std::shared_ptr<Domain> create_domain(const BusOptions& options, const std::stri
   const dds_entity_t handle = dds_create_domain(options.domain, config.c_str());
   if (handle < 0) {
     throw BusError("Cyclone DDS refused to join domain " + std::to_string(options.domain) + " (" +
-                   dds_strretcode(handle) + ")" + log.reason() +
-                   "; is the interface up (ip link set lo up) and are fewer than 60 participants in this domain?");
+                   dds_strretcode(handle) + ")" + log.reason() + "; " + kMayBeRefused);
   }
   return {new Domain{config, Entity(handle)}, [](Domain* domain) {
             const std::lock_guard lock(domains_mutex());  // no connection joins while it ends

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/log/Log.hpp>
@@ -29,6 +30,9 @@ extern "C" const char* __asan_default_options() {
 namespace rtd::bus::fastdds {
 namespace {
 
+constexpr char kNoFreePort[] =
+    "every port in shared memory is in use or was left by a killed process; samples go over UDP until the other "
+    "processes of this domain have been restarted";
 constexpr std::uint32_t kMinSegmentMib = 8;  // below it one image does not fit and is repaired in 20 ms instead
 
 /// Fast DDS logs to stdout by default, which belongs to our programs' results. Two participants of one process send
@@ -67,11 +71,16 @@ class WithoutServerOfEnvironment {
   std::optional<std::string> value_;
 };
 
-constexpr std::uint32_t kParticipantIds = 60;  // more do not fit into the port range of domain 232
+/// Each has two ports of the 250 of its domain. Domain 232 has fewer.
+std::uint32_t participant_ids(int domain) {
+  constexpr int kLastDomain = 232;
+  return domain < kLastDomain ? 119 : 60;
+}
 
-std::uint32_t next_participant_id(int domain) {
+/// The process id, and one more for each further participant of this process.
+std::uint32_t next_number() {
   static std::atomic<std::uint32_t> participants_so_far{0};
-  return free_participant_id(domain, static_cast<std::uint32_t>(getpid()) + participants_so_far++);
+  return static_cast<std::uint32_t>(getpid()) + participants_so_far++;
 }
 
 dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
@@ -86,37 +95,41 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
   return qos;
 }
 
-dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, const BusOptions& options,
+dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, BusOptions options,
                                            const HostLimits& limits, DiscoveryScope scope,
                                            dds::DomainParticipantListener* listener) {
-  dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
   static std::mutex one_at_a_time;  // Fast DDS asks getpwuid(), which is not thread-safe
   const std::lock_guard lock(one_at_a_time);
   const WithoutServerOfEnvironment announced;
   constexpr int kAttempts = 5;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
-    qos.wire_protocol().participant_id = static_cast<std::int32_t>(next_participant_id(options.domain));
+    const std::uint32_t number = next_number();
+    const auto free_id = free_participant_id(options.domain, number);
+    if (!free_id && std::exchange(options.shared_memory, false) && options.on_problem) options.on_problem(kNoFreePort);
+    dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
+    qos.wire_protocol().participant_id =
+        static_cast<std::int32_t>(free_id.value_or(number % participant_ids(options.domain)));
     if (auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none())) {
       return participant;
     }
   }
-  throw BusError(
-      "Fast DDS refused to join domain " + std::to_string(options.domain) +
-      "; is the loopback interface up (ip link set lo up) and are fewer than 60 participants in this domain?");
+  throw BusError("Fast DDS refused to join domain " + std::to_string(options.domain) + "; " + kMayBeRefused);
 }
 
 }  // namespace
 
-std::uint32_t free_participant_id(int domain, std::uint32_t first, const std::filesystem::path& shm_dir) {
+std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first,
+                                                 const std::filesystem::path& shm_dir) {
   const eprosima::fastrtps::rtps::PortParameters ports;
-  for (std::uint32_t step = 0; step < kParticipantIds; ++step) {
-    const std::uint32_t id = (first + step) % kParticipantIds;
+  const std::uint32_t ids = participant_ids(domain);
+  for (std::uint32_t step = 0; step < ids; ++step) {
+    const std::uint32_t id = (first + step) % ids;
     const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
     const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
     std::error_code unreadable;
     if (!std::filesystem::exists(shm_dir / ("fastrtps_port" + std::to_string(port)), unreadable)) return id;
   }
-  return first % kParticipantIds;
+  return std::nullopt;
 }
 
 Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry)

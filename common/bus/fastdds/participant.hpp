@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "common/bus/fastdds/codec.hpp"
@@ -20,10 +21,12 @@ namespace rtd::bus::fastdds {
 
 namespace dds = eprosima::fastdds::dds;
 
-/// Participant ids choose port numbers. A restarted process must not get the shared-memory port of its killed
-/// predecessor: the writers of others continue feeding the dead port for seconds. So the id follows the process id, and
-/// the next one is taken while there is a port of that number in `shm_dir`, in use or left behind.
-std::uint32_t free_participant_id(int domain, std::uint32_t first, const std::filesystem::path& shm_dir = "/dev/shm");
+/// Participant ids choose port numbers. A process must not get the shared-memory port of one that was killed: others
+/// keep that port in memory as long as they run, and may write to it in vain, for seconds or for good. So the id
+/// follows the process id, and the next one is taken while there is a port of that number in `shm_dir`, in use or left
+/// behind. Nothing when there is no other: then only UDP is safe.
+std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first,
+                                                 const std::filesystem::path& shm_dir = "/dev/shm");
 
 /// Our participant in a domain: transports, publisher, subscriber and topics. Thread-safe.
 class Participant {

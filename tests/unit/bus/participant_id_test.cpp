@@ -31,24 +31,25 @@ class ParticipantId : public testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("rtd_participant_id_" + std::to_string(getpid()));
 };
 
-TEST_F(ParticipantId, follows_the_process_id_within_sixty) {
+TEST_F(ParticipantId, follows_the_process_id) {
   EXPECT_EQ(free_participant_id(kDomain, 0, folder_), 0U);
-  EXPECT_EQ(free_participant_id(kDomain, 59, folder_), 59U);
-  EXPECT_EQ(free_participant_id(kDomain, 4304, folder_), 44U);
+  EXPECT_EQ(free_participant_id(kDomain, 118, folder_), 118U);
+  EXPECT_EQ(free_participant_id(kDomain, 4328, folder_), 44U);
+  EXPECT_EQ(free_participant_id(232, 4304, folder_), 44U) << "of sixty, its ports end at 65535";
 }
 
 TEST_F(ParticipantId, is_not_that_of_a_port_which_is_there) {
   add_port(44);
   add_port(45);
-  EXPECT_EQ(free_participant_id(kDomain, 4484, folder_), 46U);
-  EXPECT_EQ(free_participant_id(kDomain + 1, 4484, folder_), 44U) << "another domain has other ports";
-  add_port(59);
-  EXPECT_EQ(free_participant_id(kDomain, 59, folder_), 0U);
+  EXPECT_EQ(free_participant_id(kDomain, 4328, folder_), 46U);
+  EXPECT_EQ(free_participant_id(kDomain + 1, 4328, folder_), 44U) << "another domain has other ports";
+  add_port(118);
+  EXPECT_EQ(free_participant_id(kDomain, 118, folder_), 0U);
 }
 
-TEST_F(ParticipantId, is_the_first_one_when_all_ports_are_there) {
-  for (std::uint32_t id = 0; id < 60; ++id) add_port(id);
-  EXPECT_EQ(free_participant_id(kDomain, 61, folder_), 1U);
+TEST_F(ParticipantId, is_none_when_all_ports_are_there) {
+  for (std::uint32_t id = 0; id < 119; ++id) add_port(id);
+  EXPECT_EQ(free_participant_id(kDomain, 61, folder_), std::nullopt);
 }
 
 /// The names above are those that Fast DDS gives its files.
