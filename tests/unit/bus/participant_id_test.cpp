@@ -57,7 +57,7 @@ TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) 
   BusOptions options;
   options.domain = kDomain;
   const auto first = static_cast<std::uint32_t>(getpid());
-  const std::uint32_t before = free_participant_id(kDomain, first);
+  const auto before = free_participant_id(kDomain, first);
   {
     const Participant participant(options, read_host_limits());
     EXPECT_NE(free_participant_id(kDomain, first), before);
