@@ -37,7 +37,6 @@ void BoxTracks::begin_frame(const TrackedFrame& frame) {
     step.state.predict(seconds(dt_ns));
     track.steps.push_back({frame.stamp_ns, step.state, std::nullopt, false, std::nullopt, step.depth_m});
     if (track.steps.size() > kMaxFrames) track.steps.pop_front();
-    if (frame.rolling) track.distrusted_ns = msg::plus_ns(track.distrusted_ns, dt_ns);
   }
 }
 
@@ -123,7 +122,6 @@ void BoxTracks::hit(Track& track, std::size_t step, const vision::Detection& det
   track.last_hit_ns = seen.stamp_ns;
   track.score = detection.score;
   track.misses = 0;
-  track.distrusted_ns = 0;
 }
 
 /// The newest mask of the object, by the frame that shows it.
@@ -138,10 +136,10 @@ void BoxTracks::keep_mask(Track& track, const DetectionBatch& batch, std::size_t
 
 void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) const {
   constexpr double kMostlyVisible = 0.4;
-  if (frame.rolling || frame.stamp_ns <= track.last_hit_ns) return;
+  if (frame.stamp_ns <= track.last_hit_ns) return;
   if (visible_share(track.steps[step].state.box(), frame.size_px()) < kMostlyVisible) return;
   ++track.misses;
-  const double unseen_s = msg::minus_s(msg::minus_ns(frame.stamp_ns, track.last_hit_ns), track.distrusted_ns);
+  const double unseen_s = msg::minus_s(frame.stamp_ns, track.last_hit_ns);
   const double known_s = msg::minus_s(track.last_hit_ns, track.first_ns);
   const double survive_s = std::min(config_.survive_misses_s, known_s);
   track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > survive_s);
@@ -202,9 +200,7 @@ bool BoxTracks::expired(const Track& track) const {
   constexpr double kHardlyVisible = 0.15;
   const Step& now = track.steps.back();
   if (now.seen) return false;
-  const auto patience_ns = msg::ns_of(config_.roll_patience_s);
-  const std::int64_t unseen_ns = msg::minus_ns(now.stamp_ns, track.last_hit_ns);
-  return msg::minus_s(unseen_ns, std::min(track.distrusted_ns, patience_ns)) > config_.silence_s ||
+  return msg::minus_s(now.stamp_ns, track.last_hit_ns) > config_.silence_s ||
          visible_share(now.state.box(), frames_.back().size_px()) < kHardlyVisible;
 }
 

@@ -42,7 +42,6 @@ inline DetectorUpdate update_for(std::int64_t stamp_ns, const Detections& detect
 /// What a frame adds to the tracks besides detections.
 struct TrackedFrame {
   std::int64_t stamp_ns = 0;
-  bool rolling = false;  ///< the camera turns fast about its optical axis: detectors miss known objects
   double width_px = 0, height_px = 0;
   Eigen::Vector2d size_px() const { return {width_px, height_px}; }
 };
@@ -116,7 +115,6 @@ class BoxTracks {
     float score = 0;
     int hits = 1, misses = 0;  ///< misses since the last hit
     std::int64_t first_ns = 0, last_hit_ns = 0;
-    std::int64_t distrusted_ns = 0;  ///< rolling time since the last hit, does not count against it
     bool dead = false;
     BoxMask mask;
     std::int64_t mask_ns = 0;

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "common/msg/stamps.hpp"
-#include "services/filter/core/motion/ego_motion.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
+#include "services/filter/core/motion/ego_motion.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace rtd::filter {
 namespace {
@@ -64,7 +63,6 @@ ObjectTracker::ObjectTracker(const FilterConfig& config)
       masks_(config.masks),
       use_tracks_(config.techniques.box_tracks),
       use_flow_(config.techniques.mask_flow),
-      distrust_roll_(config.techniques.roll_distrust),
       use_pixels_(config.techniques.person_masks),
       levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
                                               : MotionLevels(config.motion_levels).all_high()),
@@ -107,11 +105,9 @@ std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detect
     clear();  // geometry only
     return {};
   }
-  const double fast_rad_s = config_.fast_roll_deg_s * std::numbers::pi / 180;
-  const bool rolling = distrust_roll_ && std::abs(roll_rate_rad_s(views)) > fast_rad_s;
   if (use_flow_) flow_.see(image.stamp_ns, image.color_bgr);
   tracks_.begin_frame(
-      {image.stamp_ns, rolling, static_cast<double>(image.color_bgr.cols), static_cast<double>(image.color_bgr.rows)});
+      {image.stamp_ns, static_cast<double>(image.color_bgr.cols), static_cast<double>(image.color_bgr.rows)});
   const auto depth_of = [&](std::int64_t stamp_ns, const vision::Detection& box) {
     if (stamp_ns == image.stamp_ns) return depth_in_box(box, image.camera, grid);
     const View* view = views.at(stamp_ns);
@@ -154,15 +150,6 @@ void ObjectTracker::learn_depths(const std::vector<SceneObject>& objects, const 
 void ObjectTracker::clear() {
   tracks_.clear();
   flow_.clear();
-}
-
-double roll_rate_rad_s(const ViewStore& views) {
-  const View* before = views.second_newest();
-  if (before == nullptr) return 0;
-  const double dt_s = msg::minus_s(views.newest().stamp_ns, before->stamp_ns);
-  if (dt_s <= 0) return 0;
-  const Eigen::Matrix3d turn = before->T_world_camera.linear().transpose() * views.newest().T_world_camera.linear();
-  return std::atan2(turn(1, 0), turn(0, 0)) / dt_s;
 }
 
 }  // namespace rtd::filter

@@ -40,14 +40,11 @@ class ObjectTracker {
 
   BoxTrackConfig config_;
   MaskConfig masks_;
-  bool use_tracks_, use_flow_, distrust_roll_, use_pixels_;
+  bool use_tracks_, use_flow_, use_pixels_;
   MotionLevels levels_;
   BoxTracks tracks_;
   MaskFlow flow_;
   std::int64_t detector_active_ns_ = 0;  ///< stamp of the last frame for which a detector was active
 };
-
-/// How fast the camera turned about its optical axis between the last two views, rad/s.
-double roll_rate_rad_s(const ViewStore& views);
 
 }  // namespace rtd::filter

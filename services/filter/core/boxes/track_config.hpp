@@ -27,8 +27,6 @@ struct BoxTrackConfig {
   int confirm_hits = 2;
   double survive_misses_s = 0.5;
   double silence_s = 1.5;
-  double fast_roll_deg_s = 30.0;
-  double roll_patience_s = 3.0;
   double unwatched_s = 0.5;
 
   void bind(auto& binder) {
@@ -42,10 +40,6 @@ struct BoxTrackConfig {
     binder.field("confirm_hits", confirm_hits, {1, 100}, "a track seen less often ends with the first miss");
     binder.field("survive_misses_s", survive_misses_s, {0.0, 60.0}, "how long a confirmed track survives misses");
     binder.field("silence_s", silence_s, {0.0, 60.0}, "how long a track is carried without any detections");
-    binder.field("fast_roll_deg_s", fast_roll_deg_s, {1.0, 1000.0},
-                 "while the camera rolls faster about its optical axis, misses "
-                 "do not count");
-    binder.field("roll_patience_s", roll_patience_s, {0.0, 60.0}, "but not for longer than this");
     binder.field("unwatched_s", unwatched_s, {0.0, 60.0}, "without a detector for this long: geometry only");
   }
 };

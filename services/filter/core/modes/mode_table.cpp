@@ -41,7 +41,7 @@ const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
       {FilterMode::kOff, only({}), make<RtdJudge>},
       {FilterMode::kSemantic,
-       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::person_masks, &T::box_tracks, &T::mask_flow, &T::roll_distrust,
+       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::person_masks, &T::box_tracks, &T::mask_flow,
              &T::more_features}),
        make<RtdJudge>},
       {FilterMode::kGeometry,
@@ -76,7 +76,6 @@ FilterConfig with_techniques_applied(FilterConfig config) {
   }
   if (!on.look_back) config.geometry.min_creeping_features = std::numeric_limits<int>::max();
   if (!on.arrivals) config.geometry.max_unsettled_share = -1;  // no share is small enough
-  if (!on.object_drift) config.belief.drift_sigmas = std::numeric_limits<double>::infinity();
   if (!on.noise_aware_tau) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;

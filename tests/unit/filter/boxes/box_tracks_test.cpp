@@ -28,7 +28,7 @@ double no_depth(std::int64_t /*stamp_ns*/, const vision::Detection& /*box*/) {
 /// Tracks in a 640x480 image; frames are numbered.
 class BoxTracksTest : public ::testing::Test {
  protected:
-  void frame(int number, bool rolling = false) { tracks_.begin_frame({stamp(number), rolling, 640, 480}); }
+  void frame(int number) { tracks_.begin_frame({stamp(number), 640, 480}); }
   void answer(int number, std::vector<vision::Detection> detections) {
     tracks_.update({stamp(number), std::move(detections)}, no_depth);
   }
@@ -40,15 +40,15 @@ class BoxTracksTest : public ::testing::Test {
       tracks_.boxes();
     }
   }
-  void silence(int first, int last, bool rolling = false) {
+  void silence(int first, int last) {
     for (int i = first; i <= last; ++i) {
-      frame(i, rolling);
+      frame(i);
       tracks_.boxes();
     }
   }
-  void denial(int first, int last, bool rolling = false) {
+  void denial(int first, int last) {
     for (int i = first; i <= last; ++i) {
-      frame(i, rolling);
+      frame(i);
       answer(i, {});
       tracks_.boxes();
     }
@@ -163,20 +163,6 @@ TEST_F(BoxTracksTest, have_no_mask_without_a_place_of_their_own) {
 TEST_F(BoxTracksTest, end_after_repeated_empty_batches) {
   walk(0, 10, 0);
   denial(11, 40);
-  EXPECT_THAT(tracks_.boxes(), IsEmpty());
-}
-
-TEST_F(BoxTracksTest, ignore_empty_batches_while_the_camera_rolls_fast) {
-  walk(0, 10, 0);
-  denial(11, 70, true);
-  EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << "two seconds";
-  denial(71, 100);
-  EXPECT_THAT(tracks_.boxes(), IsEmpty()) << "roll is over";
-}
-
-TEST_F(BoxTracksTest, end_after_empty_batches_however_long_the_camera_rolls) {
-  walk(0, 10, 0);
-  denial(11, 170, true);
   EXPECT_THAT(tracks_.boxes(), IsEmpty());
 }
 
@@ -322,15 +308,13 @@ TEST_F(BoxTracksTest, stay_bounded_with_random_boxes) {
 TEST_F(BoxTracksTest, end_when_the_stamp_jumps_to_the_end_of_time) {
   constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
                          kMin = std::numeric_limits<std::int64_t>::min();
-  for (const bool rolling : {false, true}) {
-    for (const std::int64_t stamp_ns : {kMin, std::int64_t{0}, kMax}) {
-      tracks_.begin_frame({stamp_ns, rolling, 640, 480});
-      EXPECT_THAT(tracks_.boxes(), IsEmpty()) << stamp_ns;
-      tracks_.update({stamp_ns, {person(100)}}, no_depth);
-      EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << stamp_ns;
-    }
-    tracks_.update({kMin, {person(100)}}, no_depth);
+  for (const std::int64_t stamp_ns : {kMin, std::int64_t{0}, kMax}) {
+    tracks_.begin_frame({stamp_ns, 640, 480});
+    EXPECT_THAT(tracks_.boxes(), IsEmpty()) << stamp_ns;
+    tracks_.update({stamp_ns, {person(100)}}, no_depth);
+    EXPECT_THAT(tracks_.boxes(), SizeIs(1)) << stamp_ns;
   }
+  tracks_.update({kMin, {person(100)}}, no_depth);
 }
 
 TEST_F(BoxTracksTest, are_reset_when_time_goes_back) {
