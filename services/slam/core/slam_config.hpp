@@ -148,8 +148,8 @@ struct MapperConfig {
   double old_after_s = 120.0;
   int ba_keyframes = 12;
   int ba_fixed_keyframes = 20;
-  int ba_iterations_robust = 5;
-  int ba_iterations = 2;
+  int ba_iterations_robust = 3;
+  int ba_iterations = 1;
   double correction_m = 0.002;
   double correction_rad = 0.001;
 

@@ -33,6 +33,23 @@ Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& T_camera_world, const Vect
   return moved;
 }
 
+/// factor A'A of a Jacobian whose first two rows know nothing of each other's direction and whose third is along z.
+Eigen::Matrix3d normal_matrix(const Eigen::Matrix3d& A, double factor) {
+  const double xz = factor * A(0, 0) * A(0, 2), yz = factor * A(1, 1) * A(1, 2);
+  Eigen::Matrix3d M;
+  M << factor * A(0, 0) * A(0, 0), 0, xz,  //
+      0, factor * A(1, 1) * A(1, 1), yz,   //
+      xz, yz, factor * A.col(2).squaredNorm();
+  return M;
+}
+
+/// skew(p) M.
+Eigen::Matrix3d crossed(const Eigen::Vector3d& p, const Eigen::Matrix3d& M) {
+  Eigen::Matrix3d product;
+  for (int column = 0; column < 3; ++column) product.col(column) = p.cross(M.col(column));
+  return product;
+}
+
 /// Marquardt's damping: every diagonal element grows by the same factor.
 template <class Matrix>
 Matrix damped(const Matrix& H, double damping) {
@@ -149,24 +166,22 @@ void DenseBundle::add(const BundleObservation& observation, std::size_t place, c
   }
   const Eigen::Matrix3d A = vision::rgbd_jacobian(projection, p_camera, observation.measured);
   const double factor = observation.weight * robust.slope * inverse_variance;
-  const Eigen::Matrix3d M = factor * A.transpose() * A;
+  const Eigen::Matrix3d M = normal_matrix(A, factor);
   const Eigen::Vector3d g = factor * A.transpose() * residual;
   const Eigen::Matrix3d MR = M * R;
   C_[observation.point].noalias() += R.transpose() * MR;
   w_[observation.point].noalias() += R.transpose() * g;
   if (camera == kFixed) return;
-  const Eigen::Matrix3d turn = geometry::skew(p_rotated);  // dp_camera/dphi = -turn
-  const Eigen::Matrix3d turn_M = turn * M;
-  Matrix6d& B = B_[static_cast<std::size_t>(camera)];
+  const Eigen::Matrix3d turn_M = crossed(p_rotated, M);  // dp_camera/dphi = -skew(p_rotated)
+  Matrix6d& B = B_[static_cast<std::size_t>(camera)];    // the lower triangle
   B.topLeftCorner<3, 3>() += M;
   B.bottomLeftCorner<3, 3>() += turn_M;
-  B.topRightCorner<3, 3>() += turn_M.transpose();
-  B.bottomRightCorner<3, 3>().noalias() -= turn_M * turn;
+  B.bottomRightCorner<3, 3>() += crossed(p_rotated, turn_M.transpose());
   Vector6d& v = v_[static_cast<std::size_t>(camera)];
   v.head<3>() += g;
-  v.tail<3>().noalias() += turn * g;
+  v.tail<3>() += p_rotated.cross(g);
   E_[place].topRows<3>() = MR;
-  E_[place].bottomRows<3>().noalias() = turn * MR;
+  E_[place].bottomRows<3>() = crossed(p_rotated, MR);
 }
 
 /// S = B - E C^-1 E' and s = v - E C^-1 w, Eq. (3), both with damping. False when interrupted.

@@ -49,7 +49,8 @@ class DenseBundle {
   std::vector<std::uint32_t> ordered_;  ///< observations (inliers), by point
   std::vector<std::uint32_t> first_;    ///< per point, its first place in ordered_; one more at the end
 
-  // H = [B E; E' C] and the gradient [v; w], where B and C have one block for each camera and point.
+  // H = [B E; E' C] and the gradient [v; w], where B (its lower triangle) and C have one block for each camera and
+  // point.
   std::vector<geometry::Matrix6d> B_;
   std::vector<geometry::Vector6d> v_;
   std::vector<Eigen::Matrix3d> C_, C_inverse_;
