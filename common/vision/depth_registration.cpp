@@ -189,14 +189,6 @@ void paint(const SeenRow& row, const Quads& quads, std::vector<std::size_t>& lar
   for (std::size_t k = 0; k < count; ++k) paint_all(row, quads, larger[k], nearest, width);
 }
 
-bool wide_vectors() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
-
 }  // namespace
 
 /// The loops over rows, for 4 and for 8 pixels at a time with the same result.
@@ -320,14 +312,7 @@ struct DepthRegistration::Kernels {
   void step_4(const SeenRow& above, const SeenRow& row, const SeenRow& below, Quads& quads) const {
     outline_lanes<Lanes<4>>(above, row, below, quads);
   }
-#if defined(__x86_64__)
-#define RTD_AVX2 __attribute__((target("avx2")))
-#else
-#define RTD_AVX2
-#endif
-  RTD_AVX2 void step_8(std::size_t row, SeenRow& to) const {
-    project_lanes<Lanes<8>>(row, to);
-  }
+  RTD_AVX2 void step_8(std::size_t row, SeenRow& to) const { project_lanes<Lanes<8>>(row, to); }
   RTD_AVX2 void step_8(const SeenRow& above, const SeenRow& row, const SeenRow& below, Quads& quads) const {
     outline_lanes<Lanes<8>>(above, row, below, quads);
   }

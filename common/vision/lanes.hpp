@@ -8,11 +8,27 @@
 /// Inlined into functions for another instruction set, too.
 #define RTD_INLINE inline __attribute__((always_inline))
 
+/// Of a function that is only called where wide_vectors().
+#if defined(__x86_64__)
+#define RTD_AVX2 __attribute__((target("avx2")))
+#else
+#define RTD_AVX2
+#endif
+
 // Vectors wider than the default instruction set's are only passed to inlined functions.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace rtd::vision {
+
+/// Whether the processor has vectors of 32 bytes.
+inline bool wide_vectors() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
 
 template <int kLanes>
 struct Vectors;

@@ -2,151 +2,95 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/orb/brief.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <random>
-#include <vector>
+#include <cstring>
 
+#include "common/vision/lanes.hpp"
 #include "services/filter/core/orb/corners.hpp"
 
 namespace rtd::filter {
 namespace {
 
-constexpr int kSide = 2 * kPatchRadiusPx + 1;
+// Every computation on pixels is made twice, for two widths of vectors.
 
-/// Weights of the disc, row by row and of full width, so that the compiler can use vector instructions.
-struct DiscWeights {
-  std::array<std::array<std::int16_t, kSide>, kSide> column{};  ///< u inside the disc, 0 outside
-  std::array<std::array<std::int16_t, kSide>, kSide> inside{};  ///< 1 inside the disc, 0 outside
-};
+constexpr std::size_t kSide = 2 * kPatchRadiusPx + 2;  // one column more than the disc has: whole vectors
 
-constexpr DiscWeights make_disc() {
-  DiscWeights disc;
-  for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
+/// -1 (all bits) inside the disc, 0 outside, by distance of the row from the centre; columns from -kPatchRadiusPx.
+constexpr std::array<std::array<std::int16_t, kSide>, kPatchRadiusPx + 1> kDisc = [] {
+  std::array<std::array<std::int16_t, kSide>, kPatchRadiusPx + 1> disc{};
+  for (int v = 0; v <= kPatchRadiusPx; ++v) {
     for (int u = -kPatchRadiusPx; u <= kPatchRadiusPx; ++u) {
       if (u * u + v * v > kPatchRadiusPx * (kPatchRadiusPx + 1)) continue;
-      const auto row = static_cast<std::size_t>(v + kPatchRadiusPx), col = static_cast<std::size_t>(u + kPatchRadiusPx);
-      disc.column[row][col] = static_cast<std::int16_t>(u);
-      disc.inside[row][col] = 1;
+      disc[static_cast<std::size_t>(v)][static_cast<std::size_t>(u + kPatchRadiusPx)] = -1;
     }
   }
   return disc;
-}
+}();
 
-constexpr DiscWeights kDisc = make_disc();
-
-constexpr double kPatternRadiusPx = kPatchRadiusPx - 1;  // rounding after rotation adds less than one pixel
-constexpr double kSpreadPx = 6.2;                        // standard deviation, patch / 5 (Calonder et al. 2010, G II)
-constexpr double kCorrelationPx = 7.0;                   // distance over which grey values forget each other
-constexpr double kMinPairPx = 4.0;                       // shorter pairs compare nearly the same pixel after smoothing
-
-struct Pair {
-  int ax, ay, bx, by;
+struct Moments {
+  int m10, m01;
 };
 
-/// Gaussian by the sum of twelve uniforms: the same bits with every standard library.
-int gaussian_px(std::mt19937_64& random) {
-  double sum = -6.0;
-  for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11U) * 0x1.0p-53;
-  return static_cast<int>(std::lround(sum * kSpreadPx));
-}
-
-bool in_patch(int x, int y) {
-  return x * x + y * y <= kPatternRadiusPx * kPatternRadiusPx;
-}
-
-/// Autocorrelation of grey values at an offset, Eq. (3).
-double grey_correlation(int dx, int dy) {
-  return std::exp(-std::sqrt(static_cast<double>(dx * dx + dy * dy)) / kCorrelationPx);
-}
-
-/// Expected correlation of two comparisons, Eq. (4).
-double pair_correlation(const Pair& p, const Pair& q) {
-  const double covariance = grey_correlation(p.ax - q.ax, p.ay - q.ay) - grey_correlation(p.ax - q.bx, p.ay - q.by) -
-                            grey_correlation(p.bx - q.ax, p.by - q.ay) + grey_correlation(p.bx - q.bx, p.by - q.by);
-  const double variance_p = 2 - 2 * grey_correlation(p.ax - p.bx, p.ay - p.by);
-  const double variance_q = 2 - 2 * grey_correlation(q.ax - q.bx, q.ay - q.by);
-  return covariance / std::sqrt(variance_p * variance_q);
-}
-
-Pair draw_pair(std::mt19937_64& random) {
-  for (;;) {
-    const Pair pair{gaussian_px(random), gaussian_px(random), gaussian_px(random), gaussian_px(random)};
-    const int dx = pair.ax - pair.bx, dy = pair.ay - pair.by;
-    if (in_patch(pair.ax, pair.ay) && in_patch(pair.bx, pair.by) && dx * dx + dy * dy >= kMinPairPx * kMinPairPx)
-      return pair;
-  }
-}
-
-std::vector<Pair> choose_pairs() {
-  constexpr int kTriesPerLimit = 300;
-  std::mt19937_64 random(20260521);
-  std::vector<Pair> chosen;
-  double limit = 0.2;  // relaxed whenever no candidate passes for a while
-  for (int tries = 0; chosen.size() < BriefPattern::kBits; ++tries) {
-    if (tries == kTriesPerLimit) {
-      limit += 0.02;
-      tries = 0;
+/// Sums of 16 bits by column, exact: at most 31 x 255 grey values, and (1 + ... + 15) x 255 for the moment over rows.
+RTD_INLINE Moments moments(const std::uint8_t* __restrict centre, std::ptrdiff_t step) {
+  std::array<std::int16_t, kSide> grey, by_row{};
+  const std::uint8_t* middle = centre - kPatchRadiusPx;
+  for (std::size_t i = 0; i < kSide; ++i) grey[i] = static_cast<std::int16_t>(middle[i] & kDisc[0][i]);
+  for (int v = 1; v <= kPatchRadiusPx; ++v) {
+    const std::uint8_t *above = middle - v * step, *below = middle + v * step;
+    const auto& inside = kDisc[static_cast<std::size_t>(v)];
+    for (std::size_t i = 0; i < kSide; ++i) {
+      grey[i] = static_cast<std::int16_t>(grey[i] + ((below[i] + above[i]) & inside[i]));
+      by_row[i] = static_cast<std::int16_t>(by_row[i] + v * ((below[i] - above[i]) & inside[i]));
     }
-    const Pair candidate = draw_pair(random);
-    bool is_independent = true;
-    for (const Pair& taken : chosen)
-      is_independent = is_independent && std::abs(pair_correlation(candidate, taken)) < limit;
-    if (!is_independent) continue;
-    chosen.push_back(candidate);
-    tries = 0;
   }
-  return chosen;
+  Moments sums{0, 0};
+  for (std::size_t i = 0; i < kSide; ++i) {
+    sums.m10 += (static_cast<int>(i) - kPatchRadiusPx) * grey[i];
+    sums.m01 += by_row[i];
+  }
+  return sums;
 }
 
-BriefPattern make_pattern() {
-  BriefPattern pattern;
-  const std::vector<Pair> pairs = choose_pairs();
-  for (std::size_t k = 0; k < BriefPattern::kBits; ++k) {
-    pattern.x[2 * k] = static_cast<float>(pairs[k].ax);
-    pattern.y[2 * k] = static_cast<float>(pairs[k].ay);
-    pattern.x[2 * k + 1] = static_cast<float>(pairs[k].bx);
-    pattern.y[2 * k + 1] = static_cast<float>(pairs[k].by);
+Moments moments_16(const std::uint8_t* centre, std::ptrdiff_t step) {
+  return moments(centre, step);
+}
+RTD_AVX2 Moments moments_32(const std::uint8_t* centre, std::ptrdiff_t step) {
+  return moments(centre, step);
+}
+
+using Offsets = std::array<std::int32_t, 2 * BriefPattern::kBits>;
+
+/// Where the points of the rotated pattern lie in memory, from the corner on.
+RTD_INLINE void rotate(float cosine, float sine, int step, Offsets& offsets) {
+  const BriefPattern& pattern = brief_pattern();
+  constexpr float kBias = 64.5F;  // makes truncation round to nearest, also below zero
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    const int dx = static_cast<int>(pattern.x[i] * cosine - pattern.y[i] * sine + kBias) - 64;
+    const int dy = static_cast<int>(pattern.x[i] * sine + pattern.y[i] * cosine + kBias) - 64;
+    offsets[i] = dy * step + dx;
   }
-  return pattern;
+}
+
+void rotate_16(float cosine, float sine, int step, Offsets& offsets) {
+  rotate(cosine, sine, step, offsets);
+}
+RTD_AVX2 void rotate_32(float cosine, float sine, int step, Offsets& offsets) {
+  rotate(cosine, sine, step, offsets);
 }
 
 }  // namespace
 
 float centroid_angle_rad(const cv::Mat& grey, cv::Point centre) {
-  int m10 = 0, m01 = 0;
-  for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
-    const std::uint8_t* pixels = grey.ptr<std::uint8_t>(centre.y + v) + centre.x - kPatchRadiusPx;
-    const auto& column = kDisc.column[static_cast<std::size_t>(v + kPatchRadiusPx)];
-    const auto& inside = kDisc.inside[static_cast<std::size_t>(v + kPatchRadiusPx)];
-    int row_sum = 0;
-    for (std::size_t i = 0; i < kSide; ++i) {
-      const auto value = static_cast<std::int16_t>(pixels[i]);
-      m10 += column[i] * value;
-      row_sum += inside[i] * value;
-    }
-    m01 += v * row_sum;
-  }
+  const auto moments_at = vision::wide_vectors() ? moments_32 : moments_16;
+  const auto [m10, m01] = moments_at(grey.ptr(centre.y) + centre.x, static_cast<std::ptrdiff_t>(grey.step));
   return std::atan2(static_cast<float>(m01), static_cast<float>(m10));
 }
 
-const BriefPattern& brief_pattern() {
-  static const BriefPattern pattern = make_pattern();
-  return pattern;
-}
-
 msg::Descriptor rotated_brief(const cv::Mat& smoothed, cv::Point centre, float angle_rad) {
-  const BriefPattern& pattern = brief_pattern();
-  const float cosine = std::cos(angle_rad), sine = std::sin(angle_rad);
-  const int stride = static_cast<int>(smoothed.step);
-  constexpr float kBias = 64.5F;  // makes truncation round to nearest, also below zero
-  std::array<int, 2 * BriefPattern::kBits> offsets;
-  for (std::size_t i = 0; i < offsets.size(); ++i) {
-    const int dx = static_cast<int>(pattern.x[i] * cosine - pattern.y[i] * sine + kBias) - 64;
-    const int dy = static_cast<int>(pattern.x[i] * sine + pattern.y[i] * cosine + kBias) - 64;
-    offsets[i] = dy * stride + dx;
-  }
+  Offsets offsets;
+  const auto rotate_pattern = vision::wide_vectors() ? rotate_32 : rotate_16;
+  rotate_pattern(std::cos(angle_rad), std::sin(angle_rad), static_cast<int>(smoothed.step), offsets);
   const std::uint8_t* origin = smoothed.ptr<std::uint8_t>(centre.y) + centre.x;
   msg::Descriptor descriptor{};
   for (std::size_t byte = 0; byte < descriptor.size(); ++byte) {

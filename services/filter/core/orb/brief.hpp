@@ -11,7 +11,7 @@
 namespace rtd::filter {
 
 /// Angle (rad, (-pi, pi], x right, y down) from a corner to the intensity centroid of the disc of kPatchRadiusPx around
-/// it: atan2(m01, m10), Rosin 1999, docs/theory/orb.md Eq. (2). The disc must lie inside the image.
+/// it: atan2(m01, m10), Rosin 1999, docs/theory/orb.md Eq. (2). The corner keeps kBorderPx from the image's border.
 float centroid_angle_rad(const cv::Mat& grey, cv::Point centre);
 
 /// The 256 point pairs that rotated BRIEF compares, as offsets (px) from the corner, before rotation.

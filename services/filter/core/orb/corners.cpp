@@ -4,24 +4,66 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/features2d.hpp>
+#include <cstdint>
+#include <cstring>
 #include <queue>
+
+#include "services/filter/core/orb/fast_scores.hpp"
 
 namespace rtd::filter {
 namespace {
 
-constexpr int kFastRadiusPx =
-    3;  // the circle of FAST-9-16: cv::FAST reports nothing nearer to the edge of what it is given
+/// The first pixel of the row from x on that has a score, eight at a time; right + 1 if there is none.
+int next_score(const std::uint8_t* row, int x, int right) {
+  std::uint64_t eight = 0;
+  for (; x + 7 <= right; x += 8) {
+    std::memcpy(&eight, row + x, sizeof eight);
+    if (eight != 0) break;
+  }
+  while (x <= right && row[x] == 0) ++x;
+  return x;
+}
 
-/// Appends the corners inside `area` (which keeps kFastRadiusPx from the image border).
-void append_fast(const cv::Mat& grey, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
-  const cv::Rect with_circle(area.x - kFastRadiusPx, area.y - kFastRadiusPx, area.width + 2 * kFastRadiusPx,
-                             area.height + 2 * kFastRadiusPx);
-  std::vector<cv::KeyPoint> found;
-  cv::FAST(grey(with_circle), found, threshold, true);
-  for (const cv::KeyPoint& point : found) {
-    corners.push_back({point.pt.x + static_cast<float>(with_circle.x), point.pt.y + static_cast<float>(with_circle.y),
-                       point.response});
+/// Scores of a level, and those of them that are peaks among all.
+struct Scored {
+  cv::Mat scores, peaks;
+};
+
+/// Whether no neighbour in `area` has as much.
+bool is_peak(const cv::Mat& scores, const cv::Rect& area, int x, int y) {
+  const std::uint8_t score = scores.at<std::uint8_t>(y, x);
+  const int right = area.x + area.width - 1, bottom = area.y + area.height - 1;
+  for (int row = std::max(area.y, y - 1); row <= std::min(bottom, y + 1); ++row) {
+    const std::uint8_t* neighbours = scores.ptr(row);
+    for (int column = std::max(area.x, x - 1); column <= std::min(right, x + 1); ++column)
+      if (neighbours[column] >= score && (row != y || column != x)) return false;
+  }
+  return true;
+}
+
+/// Appends the corners inside `area`: scores above the threshold and above those of all neighbours in `area`. Only at
+/// its edge are these others than the peaks among all.
+void append_corners(const Scored& level, const cv::Rect& area, int threshold, std::vector<Corner>& corners) {
+  const int right = area.x + area.width - 1, bottom = area.y + area.height - 1;
+  const auto append = [&](int x, int y, std::uint8_t score) {
+    if (score > threshold)
+      corners.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(score - 1)});
+  };
+  const auto append_of_edge = [&](int y, int first, int last) {
+    const std::uint8_t* scores = level.scores.ptr(y);
+    for (int x = next_score(scores, first, last); x <= last; x = next_score(scores, x + 1, last))
+      if (is_peak(level.scores, area, x, y)) append(x, y, scores[x]);
+  };
+  for (int y = area.y; y <= bottom; ++y) {
+    if (y == area.y || y == bottom) {
+      append_of_edge(y, area.x, right);
+      continue;
+    }
+    append_of_edge(y, area.x, area.x);
+    const std::uint8_t* peaks = level.peaks.ptr(y);
+    for (int x = next_score(peaks, area.x + 1, right - 1); x < right; x = next_score(peaks, x + 1, right - 1))
+      append(x, y, peaks[x]);
+    if (right > area.x) append_of_edge(y, right, right);
   }
 }
 
@@ -111,7 +153,9 @@ std::vector<Corner> detect_corners(const cv::Mat& grey, const OrbConfig& config)
   const cv::Rect usable(kBorderPx, kBorderPx, grey.cols - 2 * kBorderPx, grey.rows - 2 * kBorderPx);
   if (usable.width <= 0 || usable.height <= 0) return corners;
 
-  append_fast(grey, usable, config.fast_threshold, corners);
+  Scored level{fast_scores(grey, usable, std::min(config.fast_threshold, config.fast_threshold_low)), {}};
+  level.peaks = peaks_of(level.scores, usable);
+  append_corners(level, usable, config.fast_threshold, corners);
   const CellGrid grid(usable, config.cell_px);
   std::vector<char> occupied(static_cast<std::size_t>(grid.columns * grid.rows), 0);
   for (const Corner& corner : corners) occupied[grid.index(corner)] = 1;
@@ -120,11 +164,11 @@ std::vector<Corner> detect_corners(const cv::Mat& grey, const OrbConfig& config)
     const char* cells = &occupied[static_cast<std::size_t>(row * grid.columns)];
     for (int begin = 0; begin < grid.columns; ++begin) {
       if (cells[begin] != 0) continue;
-      int end = begin;  // a run of empty cells is searched in one call
+      int end = begin;  // a run of empty cells is one area
       while (end < grid.columns && cells[end] == 0) ++end;
       const cv::Rect run(grid.left(begin), grid.top(row), grid.left(end) - grid.left(begin),
                          grid.top(row + 1) - grid.top(row));
-      append_fast(grey, run, config.fast_threshold_low, corners);
+      append_corners(level, run, config.fast_threshold_low, corners);
       begin = end;
     }
   }

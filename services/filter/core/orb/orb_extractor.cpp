@@ -8,6 +8,7 @@
 
 #include "services/filter/core/orb/brief.hpp"
 #include "services/filter/core/orb/corners.hpp"
+#include "services/filter/core/orb/smoothing.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -88,9 +89,7 @@ cv::Point2f ImagePyramid::to_base(cv::Point2f pixel, int level) const {
   return {(pixel.x + 0.5F) * scale_x - 0.5F, (pixel.y + 0.5F) * scale_y - 0.5F};
 }
 
-OrbExtractor::OrbExtractor(const OrbConfig& config) : config_(config), pyramid_(config.levels, config.scale_factor) {
-  brief_pattern();  // made now, not within the first frame
-}
+OrbExtractor::OrbExtractor(const OrbConfig& config) : config_(config), pyramid_(config.levels, config.scale_factor) {}
 
 std::vector<msg::Feature> OrbExtractor::extract(const vision::RgbdImage& image, int feature_count, int first_level) {
   first_level = std::clamp(first_level, 0, pyramid_.levels() - 1);
@@ -111,7 +110,7 @@ void OrbExtractor::append_level(const vision::RgbdImage& image, int level, int w
   const cv::Rect whole(0, 0, grey.cols, grey.rows);
   const std::vector<Corner> corners = spread_corners(detect_corners(grey, config_), whole, wanted);
   if (corners.empty()) return;
-  cv::GaussianBlur(grey, smoothed_, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
+  smooth(grey, smoothed_);
   for (const Corner& corner : corners) {
     const cv::Point centre(static_cast<int>(corner.x), static_cast<int>(corner.y));
     const cv::Point2f raw = pyramid_.to_base({corner.x, corner.y}, level);

@@ -6,7 +6,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <set>
+#include <vector>
 
 #include "common/vision/features.hpp"
 #include "services/filter/core/orb/corners.hpp"
@@ -14,6 +16,81 @@
 
 namespace rtd::filter {
 namespace {
+
+constexpr double kPatternRadiusPx = kPatchRadiusPx - 1;  // rounding after rotation adds less than one pixel
+constexpr double kSpreadPx = 6.2;                        // standard deviation, patch / 5 (Calonder et al. 2010, G II)
+constexpr double kCorrelationPx = 7.0;                   // distance over which grey values forget each other
+constexpr double kMinPairPx = 4.0;                       // shorter pairs compare nearly the same pixel after smoothing
+
+struct Pair {
+  int ax, ay, bx, by;
+};
+
+/// Gaussian by the sum of twelve uniforms: the same bits with every standard library.
+int gaussian_px(std::mt19937_64& random) {
+  double sum = -6.0;
+  for (int i = 0; i < 12; ++i) sum += static_cast<double>(random() >> 11U) * 0x1.0p-53;
+  return static_cast<int>(std::lround(sum * kSpreadPx));
+}
+
+bool in_patch(int x, int y) {
+  return x * x + y * y <= kPatternRadiusPx * kPatternRadiusPx;
+}
+
+/// Autocorrelation of grey values at an offset, Eq. (3).
+double grey_correlation(int dx, int dy) {
+  return std::exp(-std::sqrt(static_cast<double>(dx * dx + dy * dy)) / kCorrelationPx);
+}
+
+/// Expected correlation of two comparisons, Eq. (4).
+double pair_correlation(const Pair& p, const Pair& q) {
+  const double covariance = grey_correlation(p.ax - q.ax, p.ay - q.ay) - grey_correlation(p.ax - q.bx, p.ay - q.by) -
+                            grey_correlation(p.bx - q.ax, p.by - q.ay) + grey_correlation(p.bx - q.bx, p.by - q.by);
+  const double variance_p = 2 - 2 * grey_correlation(p.ax - p.bx, p.ay - p.by);
+  const double variance_q = 2 - 2 * grey_correlation(q.ax - q.bx, q.ay - q.by);
+  return covariance / std::sqrt(variance_p * variance_q);
+}
+
+Pair draw_pair(std::mt19937_64& random) {
+  for (;;) {
+    const Pair pair{gaussian_px(random), gaussian_px(random), gaussian_px(random), gaussian_px(random)};
+    const int dx = pair.ax - pair.bx, dy = pair.ay - pair.by;
+    if (in_patch(pair.ax, pair.ay) && in_patch(pair.bx, pair.by) && dx * dx + dy * dy >= kMinPairPx * kMinPairPx)
+      return pair;
+  }
+}
+
+std::vector<Pair> choose_pairs() {
+  constexpr int kTriesPerLimit = 300;
+  std::mt19937_64 random(20260521);
+  std::vector<Pair> chosen;
+  double limit = 0.2;  // relaxed whenever no candidate passes for a while
+  for (int tries = 0; chosen.size() < BriefPattern::kBits; ++tries) {
+    if (tries == kTriesPerLimit) {
+      limit += 0.02;
+      tries = 0;
+    }
+    const Pair candidate = draw_pair(random);
+    bool is_independent = true;
+    for (const Pair& taken : chosen)
+      is_independent = is_independent && std::abs(pair_correlation(candidate, taken)) < limit;
+    if (!is_independent) continue;
+    chosen.push_back(candidate);
+    tries = 0;
+  }
+  return chosen;
+}
+
+TEST(BriefPattern, is_what_its_rule_chooses) {
+  const BriefPattern& pattern = brief_pattern();
+  const std::vector<Pair> pairs = choose_pairs();
+  for (std::size_t k = 0; k < BriefPattern::kBits; ++k) {
+    EXPECT_EQ(pattern.x[2 * k], pairs[k].ax) << "pair " << k;
+    EXPECT_EQ(pattern.y[2 * k], pairs[k].ay) << "pair " << k;
+    EXPECT_EQ(pattern.x[2 * k + 1], pairs[k].bx) << "pair " << k;
+    EXPECT_EQ(pattern.y[2 * k + 1], pairs[k].by) << "pair " << k;
+  }
+}
 
 TEST(BriefPattern, stays_inside_the_patch_when_rotated) {
   const BriefPattern& pattern = brief_pattern();
@@ -66,6 +143,24 @@ TEST(Orientation, points_to_the_bright_side) {
       }
     }
     EXPECT_NEAR(centroid_angle_rad(ramp, {30, 30}), angle, 0.02) << "rad";
+  }
+}
+
+TEST(Orientation, is_that_of_the_sums_over_the_disc) {
+  cv::Mat noise(80, 90, CV_8UC1);
+  cv::theRNG().state = 5;
+  cv::randu(noise, 0, 256);
+  for (const cv::Point centre : {cv::Point(16, 16), cv::Point(73, 63), cv::Point(40, 30)}) {
+    int m10 = 0, m01 = 0;
+    for (int v = -kPatchRadiusPx; v <= kPatchRadiusPx; ++v) {
+      for (int u = -kPatchRadiusPx; u <= kPatchRadiusPx; ++u) {
+        if (u * u + v * v > kPatchRadiusPx * (kPatchRadiusPx + 1)) continue;
+        const int grey = noise.at<std::uint8_t>(centre + cv::Point(u, v));
+        m10 += u * grey;
+        m01 += v * grey;
+      }
+    }
+    EXPECT_EQ(centroid_angle_rad(noise, centre), std::atan2(static_cast<float>(m01), static_cast<float>(m10)));
   }
 }
 
