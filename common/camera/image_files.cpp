@@ -68,7 +68,8 @@ std::string pixel_type_name(const cv::Mat& image) {
 void drop_saturated(cv::Mat& depth) {
   for (int row = 0; row < depth.rows; ++row) {
     auto* pixels = depth.ptr<std::uint16_t>(row);
-    std::replace(pixels, pixels + depth.cols, std::uint16_t{65535}, std::uint16_t{0});
+    for (int column = 0; column < depth.cols; ++column)  // vector instructions, unlike std::replace
+      pixels[column] = pixels[column] == 65535 ? std::uint16_t{0} : pixels[column];
   }
 }
 

@@ -11,11 +11,14 @@
 #include <csetjmp>
 #include <cstring>
 #include <new>
+#include <optional>
+#include <utility>
+
+#include "common/vision/plain_png.hpp"
 
 namespace rtd::vision {
 namespace {
 
-constexpr std::int64_t kMaxBytesPerByte = 1100;  // deflate reaches 1032
 constexpr png_uint_32 kMaxPngSide = 32768;
 constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of texts and colour profiles, which are not needed here
 constexpr double kRedOfGrey = 0.299, kGreenOfGrey = 0.587;
@@ -79,8 +82,8 @@ class PngDecoder {
     if (rules_.pixels == PixelsAs::kBgr) return CV_8UC3;
     if (rules_.pixels == PixelsAs::kGrey) return CV_8UC1;
     const bool has_color = (color_ & PNG_COLOR_MASK_COLOR) != 0;
-    const bool transparent = (color_ & PNG_COLOR_MASK_ALPHA) != 0 ||
-                             (has_color && png_get_valid(png_, info_, PNG_INFO_tRNS) != 0);
+    const bool transparent =
+        (color_ & PNG_COLOR_MASK_ALPHA) != 0 || (has_color && png_get_valid(png_, info_, PNG_INFO_tRNS) != 0);
     return CV_MAKETYPE(bits_ == 16 ? CV_16U : CV_8U, transparent ? 4 : (has_color ? 3 : 1));
   }
 
@@ -97,7 +100,7 @@ class PngDecoder {
 
   void convert_to(int type) {
     const bool has_color = (color_ & PNG_COLOR_MASK_COLOR) != 0, wants_color = CV_MAT_CN(type) > 1;
-    CV_MAT_DEPTH(type) == CV_8U && bits_ == 16 ? png_set_strip_16(png_) : png_set_swap(png_);
+    CV_MAT_DEPTH(type) == CV_8U&& bits_ == 16 ? png_set_strip_16(png_) : png_set_swap(png_);
     CV_MAT_CN(type) < 4 ? png_set_strip_alpha(png_) : png_set_tRNS_to_alpha(png_);
     if (color_ == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png_);
     if (!has_color && bits_ < 8) png_set_expand_gray_1_2_4_to_8(png_);
@@ -191,6 +194,7 @@ bool can_be_png(const cv::Mat& image) {
 }  // namespace
 
 DecodedImage decode_png(std::span<const std::uint8_t> bytes, const DecodeRules& rules) {
+  if (std::optional<cv::Mat> pixels = decode_plain_png(bytes, rules)) return {std::move(*pixels), {}};
   return PngDecoder(bytes, rules).decode();
 }
 

@@ -14,6 +14,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "common/vision/plain_png.hpp"
+
 namespace rtd::vision {
 namespace {
 
@@ -74,7 +76,8 @@ Bytes with_jpeg_size(Bytes jpeg, int width, int height) {
 
 Bytes with_png_size(Bytes png, std::uint32_t width, std::uint32_t height) {
   const auto put = [&](std::size_t at, std::uint32_t value) {
-    for (int i = 0; i < 4; ++i) png[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
+    for (int i = 0; i < 4; ++i)
+      png[at + static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(value >> (24 - 8 * i));
   };
   put(16, width);
   put(20, height);
@@ -87,10 +90,71 @@ TEST(ImageCodecs, decode_to_the_pixels_of_opencv) {
     EXPECT_EQ(difference_from_opencv(encoded(".png", scene(type))), "") << type;
   EXPECT_EQ(difference_from_opencv(encoded(".png", scene(CV_8UC1) > 127, {cv::IMWRITE_PNG_BILEVEL, 1})), "");
   for (const int type : {CV_8UC1, CV_8UC3})
-    for (const std::vector<int>& parameters :
-         {std::vector<int>{}, {cv::IMWRITE_JPEG_QUALITY, 30}, {cv::IMWRITE_JPEG_PROGRESSIVE, 1},
-          {cv::IMWRITE_JPEG_OPTIMIZE, 1, cv::IMWRITE_JPEG_RST_INTERVAL, 3}})
+    for (const std::vector<int>& parameters : {std::vector<int>{},
+                                               {cv::IMWRITE_JPEG_QUALITY, 30},
+                                               {cv::IMWRITE_JPEG_PROGRESSIVE, 1},
+                                               {cv::IMWRITE_JPEG_OPTIMIZE, 1, cv::IMWRITE_JPEG_RST_INTERVAL, 3}})
       EXPECT_EQ(difference_from_opencv(encoded(".jpg", scene(type), parameters)), "") << type;
+}
+
+/// A PNG of noise whose rows use all five filters in turn, in two chunks, with one that says nothing about pixels.
+Bytes filtered_png(int type, cv::Size size) {
+  const auto bits = static_cast<std::uint8_t>(CV_MAT_DEPTH(type) == CV_8U ? 8 : 16);
+  const std::size_t row_bytes = static_cast<std::size_t>(size.width) * CV_ELEM_SIZE(type);
+  std::mt19937 random(3);
+  Bytes rows;
+  for (int y = 0; y < size.height; ++y) {
+    rows.push_back(static_cast<std::uint8_t>((y + 4) % 5));
+    for (std::size_t i = 0; i < row_bytes; ++i) rows.push_back(static_cast<std::uint8_t>(random() % 64));
+  }
+  Bytes packed(compressBound(rows.size()));
+  uLongf packed_size = packed.size();
+  compress(packed.data(), &packed_size, rows.data(), rows.size());
+  const auto middle = packed.begin() + static_cast<std::ptrdiff_t>(packed_size / 2);
+  Bytes header(13, 0);
+  header[3] = static_cast<std::uint8_t>(size.width);
+  header[7] = static_cast<std::uint8_t>(size.height);
+  header[8] = bits;
+  header[9] = CV_MAT_CN(type) == 3 ? 2 : 0;
+  Bytes png{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
+  const auto add = [&png](const std::string& kind, const Bytes& data) {
+    for (int shift = 24; shift >= 0; shift -= 8) png.push_back(static_cast<std::uint8_t>(data.size() >> shift));
+    const std::size_t begin = png.size();
+    png.insert(png.end(), kind.begin(), kind.end());
+    png.insert(png.end(), data.begin(), data.end());
+    const auto crc = static_cast<std::uint32_t>(crc32(0, &png[begin], static_cast<uInt>(png.size() - begin)));
+    for (int shift = 24; shift >= 0; shift -= 8) png.push_back(static_cast<std::uint8_t>(crc >> shift));
+  };
+  add("IHDR", header);
+  add("tEXt", {'a', 0, 'b'});
+  add("IDAT", Bytes(packed.begin(), middle));
+  add("IDAT", Bytes(middle, packed.begin() + static_cast<std::ptrdiff_t>(packed_size)));
+  add("IEND", {});
+  return png;
+}
+
+TEST(ImageCodecs, decode_every_filter_of_png_to_the_pixels_of_opencv) {
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1})
+    for (const cv::Size size : {cv::Size(93, 71), cv::Size(1, 40), cv::Size(40, 1), cv::Size(3, 11)})
+      EXPECT_EQ(difference_from_opencv(filtered_png(type, size)), "") << type << ", " << size;
+}
+
+TEST(ImageCodecs, leave_to_libpng_what_is_not_plain) {
+  const DecodeRules stored{.pixels = PixelsAs::kStored};
+  for (const int type : {CV_8UC1, CV_8UC3, CV_16UC1}) {
+    const Bytes png = encoded(".png", scene(type));
+    const std::optional<cv::Mat> plain = decode_plain_png(png, stored);
+    EXPECT_TRUE(plain && same(*plain, scene(type)));
+    Bytes damaged = png;
+    damaged[png.size() / 2] ^= 1;
+    EXPECT_FALSE(decode_plain_png(damaged, stored));
+    EXPECT_FALSE(decode_plain_png(std::span(png).first(png.size() - 1), stored));
+    EXPECT_FALSE(decode_plain_png(png, {.pixels = PixelsAs::kStored, .max_pixels = 100}));
+  }
+  EXPECT_FALSE(decode_plain_png(encoded(".png", scene(CV_8UC4)), stored)) << "transparency";
+  EXPECT_FALSE(decode_plain_png(encoded(".png", scene(CV_16UC3)), stored));
+  EXPECT_FALSE(decode_plain_png(encoded(".png", scene(CV_8UC1)), {.pixels = PixelsAs::kBgr})) << "to be converted";
+  EXPECT_FALSE(decode_plain_png({}, stored));
 }
 
 TEST(ImageCodecs, decode_motion_jpeg_without_its_huffman_tables) {
@@ -105,8 +169,8 @@ TEST(ImageCodecs, turn_photos_upright_as_opencv_does) {
   const Bytes jpeg = encoded(".jpg", scene(CV_8UC3));
   for (std::uint8_t orientation = 0; orientation < 10; ++orientation) {
     Bytes photo = jpeg;
-    const Bytes exif = {0xFF, 0xE1, 0, 34, 'E', 'x', 'i', 'f', 0, 0, 'I', 'I', 42, 0, 8, 0, 0, 0, 1, 0,
-                        0x12, 0x01, 3, 0, 1, 0, 0, 0, orientation, 0, 0, 0, 0, 0, 0, 0};
+    const Bytes exif = {0xFF, 0xE1, 0,    34,   'E', 'x', 'i', 'f', 0, 0, 'I',         'I', 42, 0, 8, 0, 0, 0,
+                        1,    0,    0x12, 0x01, 3,   0,   1,   0,   0, 0, orientation, 0,   0,  0, 0, 0, 0, 0};
     photo.insert(photo.begin() + 2, exif.begin(), exif.end());
     EXPECT_EQ(difference_from_opencv(photo), "") << int{orientation};
   }
@@ -157,8 +221,9 @@ TEST(ImageCodecs, read_the_emptiest_images_of_full_size) {
   for (const int type : {CV_8UC1, CV_8UC3}) {
     const cv::Mat black = cv::Mat::zeros(1200, 1920, type);
     EXPECT_EQ(decode_image(encode_jpeg(black, 1)).problem, "");
-    EXPECT_EQ(decode_image(encoded(".jpg", black, {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_OPTIMIZE, 1})).problem,
-              "");
+    EXPECT_EQ(
+        decode_image(encoded(".jpg", black, {cv::IMWRITE_JPEG_PROGRESSIVE, 1, cv::IMWRITE_JPEG_OPTIMIZE, 1})).problem,
+        "");
     EXPECT_EQ(decode_image(encoded(".png", black, {cv::IMWRITE_PNG_COMPRESSION, 9})).problem, "");
   }
 }
@@ -199,9 +264,8 @@ TEST(ImageCodecs, refuse_every_truncated_image) {
 
 TEST(ImageCodecs, survive_any_damage) {
   std::mt19937 random(1);
-  for (const Bytes& whole :
-       {encoded(".jpg", scene(CV_8UC3)), encoded(".png", scene(CV_16UC1)),
-        encoded(".jpg", scene(CV_8UC3), {cv::IMWRITE_JPEG_PROGRESSIVE, 1})}) {
+  for (const Bytes& whole : {encoded(".jpg", scene(CV_8UC3)), encoded(".png", scene(CV_16UC1)),
+                             encoded(".jpg", scene(CV_8UC3), {cv::IMWRITE_JPEG_PROGRESSIVE, 1})}) {
     for (int i = 0; i < 1000; ++i) {
       Bytes damaged = whole;
       for (int changes = 0; changes < 1 + i % 8; ++changes)
