@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/vision/pose_optimizer.hpp"
 
-#include <ceres/tiny_solver.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <optional>
 
 #include "common/vision/general_loss.hpp"
+#include "common/vision/pose_solver.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -17,102 +16,6 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Vector6d;
 using Matrix36d = Eigen::Matrix<double, 3, 6>;
-
-/// Squared residual of a point that a trial step pushed behind the camera: bad enough to refuse the step.
-constexpr double kBehindCameraChi2 = 1e6;
-
-double chi2_limit(const PoseOptimizerOptions& options, const PoseObservation& observation) {
-  return observation.measured.has_depth() ? options.max_chi2_rgbd : options.max_chi2_pixel;
-}
-
-/// What makes white noise of an error of the rotation.
-Eigen::Matrix3d root_information(const RotationPrior& rotation) {
-  return rotation.covariance.llt().matrixL().solve(Eigen::Matrix3d::Identity());
-}
-
-/// The cost function that TinySolver sees: 6 parameters [rho; phi] around T_camera_world, three residuals per active
-/// observation, and three of a known rotation.
-class PoseCost {
- public:
-  using Scalar = double;
-  enum { NUM_RESIDUALS = Eigen::Dynamic, NUM_PARAMETERS = 6 };
-
-  PoseCost(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world, const PoseOptimizerOptions& options,
-           bool robust, const std::optional<GeneralLoss>& loss)
-      : camera_(camera), T_camera_world_(T_camera_world), options_(options), robust_(robust), loss_(loss) {}
-
-  void reserve(std::size_t observations) { active_.reserve(observations); }
-  void add(const PoseObservation& observation) { active_.push_back(&observation); }
-  std::size_t size() const { return active_.size(); }
-  int NumResiduals() const {  // NOLINT(readability-identifier-naming): the name that TinySolver asks for
-    return static_cast<int>(3 * (active_.size() + (options_.rotation ? 1 : 0)));
-  }
-
-  bool operator()(const double* parameters, double* residuals, double* jacobian) const {
-    const Eigen::Map<const Vector6d> x(parameters);
-    const Eigen::Vector3d phi = x.tail<3>();
-    const Eigen::Matrix3d R = geometry::so3_exp(phi) * T_camera_world_.linear();
-    const Eigen::Vector3d t = T_camera_world_.translation() + x.head<3>();
-    const Eigen::Matrix3d left_jacobian = geometry::so3_left_jacobian(phi);
-    Eigen::Map<Eigen::VectorXd> r(residuals, NumResiduals());
-    Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, 6>> J(jacobian, jacobian != nullptr ? NumResiduals() : 0, 6);
-    for (std::size_t i = 0; i < active_.size(); ++i) {
-      const auto row = static_cast<Eigen::Index>(3 * i);
-      const PoseObservation& observation = *active_[i];
-      const Eigen::Vector3d p_rotated = R * observation.p_world, p_camera = p_rotated + t;
-      if (p_camera.z() < kMinProjectionDepth_m) {
-        r.segment<3>(row) = Eigen::Vector3d(std::sqrt(observation.weight * kBehindCameraChi2), 0, 0);
-        if (jacobian != nullptr) J.middleRows<3>(row).setZero();
-        continue;
-      }
-      const Eigen::Vector3d whitened = rgbd_residual(camera_, p_camera, observation.measured) / observation.sigma_px;
-      const Scaling scaling = robust_scaling(observation, whitened.squaredNorm());
-      r.segment<3>(row) = scaling.residual * whitened;
-      if (jacobian != nullptr) {
-        J.middleRows<3>(row) = scaling.jacobian / observation.sigma_px *
-                               pose_jacobian(camera_, p_rotated, p_camera, left_jacobian, observation.measured);
-      }
-    }
-    if (options_.rotation) {
-      const Eigen::Matrix3d root = root_information(*options_.rotation);
-      const Eigen::Vector3d off_rad = geometry::so3_log(R * options_.rotation->R_world_camera);
-      r.tail<3>() = root * off_rad;
-      if (jacobian != nullptr) {
-        J.bottomLeftCorner<3, 3>().setZero();
-        J.bottomRightCorner<3, 3>() = root * geometry::so3_left_jacobian(off_rad).inverse() * left_jacobian;
-      }
-    }
-    return true;
-  }
-
- private:
-  struct Scaling {
-    double residual, jacobian;
-  };
-
-  /// Factors that make |r|^2 the weighted Huber loss w*rho(s) and J^T r its exact gradient, docs/theory/tracking.md
-  /// Eq. (3): r = sqrt(w rho/s) e, J = sqrt(w) rho' / sqrt(rho/s) de/dx.
-  Scaling robust_scaling(const PoseObservation& observation, double s) const {
-    const double root_weight = std::sqrt(observation.weight), limit = chi2_limit(options_, observation);
-    if (loss_) {
-      constexpr double kTiny = 1e-9;  // rho(s) / s goes to 1
-      const LossValue loss = (*loss_)(s);
-      const double root_ratio = s < kTiny ? 1.0 : std::sqrt(loss.rho / s);
-      return {root_weight * root_ratio, root_weight * loss.slope / root_ratio};
-    }
-    if (!robust_ || s <= limit) return {root_weight, root_weight};
-    const double root_s = std::sqrt(s), delta = std::sqrt(limit);
-    const double root_ratio = std::sqrt((2 * delta * root_s - limit) / s);
-    return {root_weight * root_ratio, root_weight * (delta / root_s) / root_ratio};
-  }
-
-  RgbdProjection camera_;
-  Eigen::Isometry3d T_camera_world_;
-  PoseOptimizerOptions options_;
-  bool robust_;
-  std::optional<GeneralLoss> loss_;  ///< instead of Huber's, in every round
-  std::vector<const PoseObservation*> active_;
-};
 
 /// chi2 of an observation, infinite behind the camera.
 double chi2(const RgbdProjection& camera, const Eigen::Isometry3d& T_camera_world, const PoseObservation& observation) {
@@ -258,10 +161,7 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
       if (result.inlier[i] != 0) cost.add(observations[i]);
     }
     if (static_cast<int>(cost.size()) < options.min_inliers) break;
-    ceres::TinySolver<PoseCost> solver;
-    solver.options.max_num_iterations = options.max_iterations;
-    Vector6d x = Vector6d::Zero();
-    solver.Solve(cost, &x);
+    const Vector6d x = solve(cost, options.max_iterations);
     if (!x.allFinite()) break;
     T_camera_world.linear() = geometry::so3_exp(x.tail<3>()) * T_camera_world.linear();
     T_camera_world.translation() += x.head<3>();

@@ -56,8 +56,8 @@ struct PoseOptimizerResult {
 
 /// Robust pose of one camera against fixed world points, docs/theory/tracking.md Eq. (1)-(4).
 ///
-/// Minimises sum_i w_i rho(|r_i / sigma_i|^2) over T_camera_world with Ceres' TinySolver; observations whose chi2 is
-/// too large after a round, or that lie behind the camera, sit out the next one and may come back. Deterministic.
+/// Minimises sum_i w_i rho(|r_i / sigma_i|^2) over T_camera_world (pose_solver.hpp); observations whose chi2 is too
+/// large after a round, or that lie behind the camera, sit out the next one and may come back. Deterministic.
 PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
                                   const Eigen::Isometry3d& T_world_camera_initial,
                                   const PoseOptimizerOptions& options = {});

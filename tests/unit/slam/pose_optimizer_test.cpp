@@ -4,7 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <random>
+#include <utility>
+
+#include "common/vision/pose_solver.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -158,6 +162,46 @@ TEST(PoseJacobian, agrees_with_central_differences) {
     const Eigen::Vector3d numeric = (residual(x0 + step) - residual(x0 - step)) / (2 * kStep);
     EXPECT_LT((analytic.col(i) - numeric).norm(), 1e-4 * std::max(1.0, numeric.norm())) << "column " << i;
   }
+}
+
+TEST(PoseCost, has_the_descent_of_its_own_differences_whatever_the_loss) {
+  const Scene scene = make_scene(40, 3.0);
+  const geometry::Vector6d x = (geometry::Vector6d() << 0.02, -0.03, 0.05, 0.03, -0.02, 0.04).finished();
+  PoseOptimizerOptions turned;
+  turned.rotation = RotationPrior{scene.T_world_camera.linear(), 1e-4 * Eigen::Matrix3d::Identity()};
+  const std::pair<PoseOptimizerOptions, std::optional<GeneralLoss>> cases[] = {
+      {{}, {}}, {turned, {}}, {{}, GeneralLoss{.shape = 1, .scale2 = 2}}};
+  for (const auto& [options, loss] : cases) {
+    for (const bool robust : {false, true}) {
+      PoseCost cost(kCamera, scene.T_world_camera.inverse(), options, robust, loss);
+      for (const PoseObservation& observation : scene.observations) cost.add(observation);
+      const NormalEquations equations = cost.linearize(x);
+      EXPECT_NEAR(equations.squared, cost.squared(x), 1e-9 * equations.squared);
+      for (int i = 0; i < 6; ++i) {
+        const geometry::Vector6d step = 1e-6 * geometry::Vector6d::Unit(i);
+        const double slope = (cost.squared(x + step) - cost.squared(x - step)) / 2e-6;
+        EXPECT_NEAR(-2 * equations.descent[i], slope, 1e-4 * equations.descent.norm()) << "parameter " << i;
+      }
+    }
+  }
+}
+
+TEST(PoseCost, has_the_hessian_of_the_jacobians_of_its_points) {
+  const Scene scene = make_scene(40, 1.0);
+  const PoseOptimizerOptions options;
+  const Eigen::Isometry3d T_camera_world = scene.T_world_camera.inverse();
+  PoseCost cost(kCamera, T_camera_world, options, false, {});
+  const geometry::Vector6d x = (geometry::Vector6d() << 0.02, -0.03, 0.05, 0.3, -0.2, 0.4).finished();
+  const Eigen::Matrix3d left_jacobian = geometry::so3_left_jacobian(x.tail<3>());
+  geometry::Matrix6d expected = geometry::Matrix6d::Zero();
+  for (const PoseObservation& o : scene.observations) {
+    cost.add(o);
+    const Eigen::Vector3d p_rotated = geometry::so3_exp(x.tail<3>()) * T_camera_world.linear() * o.p_world;
+    const auto J = pose_jacobian(kCamera, p_rotated, p_rotated + T_camera_world.translation() + x.head<3>(),
+                                 left_jacobian, o.measured);
+    expected += J.transpose() * J;
+  }
+  EXPECT_LT((cost.linearize(x).hessian - expected).norm(), 1e-10 * expected.norm());
 }
 
 /// Bearings of a wall 4 m away: a way to the side and a turn look nearly alike.
