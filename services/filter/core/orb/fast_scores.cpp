@@ -119,8 +119,8 @@ struct Row {
 template <class P>
 RTD_INLINE void score_block(const Row& row, int x, const Circle& circle, const typename P::Bytes& threshold) {
   const std::uint8_t* centre = row.from + x;
-  if (!P::any(P::above(P::lesser(bound<P>(centre, circle, 0), bound<P>(centre, circle, 2)), threshold))) return;
-  P::store(row.to + x, P::above(score<P>(centre, circle), threshold));
+  const auto most = P::above(P::lesser(bound<P>(centre, circle, 0), bound<P>(centre, circle, 2)), threshold);
+  P::store(row.to + x, P::any(most) ? P::above(score<P>(centre, circle), threshold) : most);
 }
 
 template <class P>
@@ -165,6 +165,13 @@ RTD_AVX2 void keep_peaks_32(const Row& row, std::ptrdiff_t step) {
   keep_peaks<Pixels<32>>(row, step);
 }
 
+/// The pixels next to the area.
+void clear_around(const cv::Rect& area, cv::Mat& scores) {
+  const int left = area.x - 1, top = area.y - 1, right = area.x + area.width, bottom = area.y + area.height;
+  for (const int y : {top, bottom}) scores(cv::Rect(left, y, area.width + 2, 1)).setTo(0);
+  for (const int x : {left, right}) scores(cv::Rect(x, area.y, 1, area.height)).setTo(0);
+}
+
 struct Kernels {
   decltype(&score_row_1) score;
   decltype(&keep_peaks_1) keep;
@@ -179,7 +186,8 @@ Kernels kernels_for(int width) {
 }  // namespace
 
 cv::Mat fast_scores(const cv::Mat& grey, const cv::Rect& area, int threshold) {
-  cv::Mat scores = cv::Mat::zeros(grey.size(), CV_8UC1);
+  cv::Mat scores(grey.size(), CV_8UC1);
+  clear_around(area, scores);
   const Circle circle = circle_of(grey);
   const Kernels kernels = kernels_for(area.width);
   for (int y = area.y; y < area.y + area.height; ++y)
@@ -189,7 +197,7 @@ cv::Mat fast_scores(const cv::Mat& grey, const cv::Rect& area, int threshold) {
 }
 
 cv::Mat peaks_of(const cv::Mat& scores, const cv::Rect& area) {
-  cv::Mat peaks = cv::Mat::zeros(scores.size(), CV_8UC1);
+  cv::Mat peaks(scores.size(), CV_8UC1);
   const Kernels kernels = kernels_for(area.width);
   for (int y = area.y; y < area.y + area.height; ++y)
     kernels.keep({scores.ptr(y), peaks.ptr(y), area.x, area.x + area.width}, static_cast<std::ptrdiff_t>(scores.step));

@@ -8,6 +8,7 @@
 
 #include "services/filter/core/orb/brief.hpp"
 #include "services/filter/core/orb/corners.hpp"
+#include "services/filter/core/orb/shrink.hpp"
 #include "services/filter/core/orb/smoothing.hpp"
 
 namespace rtd::filter {
@@ -77,7 +78,7 @@ void ImagePyramid::build(const cv::Mat& image, int first_level) {
     if (level < static_cast<std::size_t>(first_level)) continue;
     const cv::Size size(std::max(1, static_cast<int>(std::lround(images_[0].cols / scale))),
                         std::max(1, static_cast<int>(std::lround(images_[0].rows / scale))));
-    cv::resize(images_[from], images_[level], size, 0, 0, cv::INTER_LINEAR);
+    shrink(images_[from], size, images_[level]);
     from = level;
   }
 }

@@ -51,6 +51,7 @@ RTD_AVX2 void add_columns_32(const std::uint16_t* sums, int columns, std::uint8_
 }
 
 int mirrored(int position, int count) {
+  if (position >= 0 && position < count) return position;
   return cv::borderInterpolate(position, count, cv::BORDER_REFLECT_101);
 }
 

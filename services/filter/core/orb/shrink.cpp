@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/filter/core/orb/shrink.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#if defined(__SSE4_1__)
+#include <smmintrin.h>
+#endif
+
+namespace rtd::filter {
+
+#if defined(__SSE4_1__)
+namespace {
+
+constexpr int kBlock = 8, kLoaded = 16;  // pixels made at a time, and pixels looked at for them
+constexpr double kMinScale = 1.02;       // so that the last pixel lies between two
+constexpr double kMaxScale = 1.8;        // so that the pixels looked at suffice
+
+/// Between which two pixels one lies, and their weights: 2048 together.
+struct Between {
+  int first;
+  std::int16_t weight_first, weight_second;
+};
+
+std::vector<Between> positions(int from, int to) {
+  constexpr float kUnit = 2048;
+  const double scale = 1.0 / (static_cast<double>(to) / from);
+  std::vector<Between> all;
+  all.reserve(static_cast<std::size_t>(to));
+  for (int i = 0; i < to; ++i) {
+    const auto position = static_cast<float>((i + 0.5) * scale - 0.5);
+    const int first = static_cast<int>(std::floor(position));
+    const float second = position - static_cast<float>(first);
+    all.push_back({first, cv::saturate_cast<std::int16_t>((1.0F - second) * kUnit),
+                   cv::saturate_cast<std::int16_t>(second * kUnit)});
+  }
+  return all;
+}
+
+/// Eight neighbours in a row of the result.
+struct Block {
+  std::array<std::uint8_t, 2 * kBlock> picked;  ///< of the pixels looked at, two each
+  std::array<std::int16_t, 2 * kBlock> weights;
+  int begin, looked_at;  ///< where the result and the pixels looked at begin
+};
+
+std::vector<Block> blocks_of(const std::vector<Between>& columns, int from_columns) {
+  const int count = static_cast<int>(columns.size());
+  std::vector<Block> blocks;
+  for (int x = 0; x < count; x += kBlock) {
+    Block block;
+    block.begin = std::min(x, count - kBlock);  // the last block overlaps the one before
+    block.looked_at = std::min(columns[static_cast<std::size_t>(block.begin)].first, from_columns - kLoaded);
+    for (int i = 0; i < kBlock; ++i) {
+      const Between& column = columns[static_cast<std::size_t>(block.begin + i)];
+      const auto at = static_cast<std::size_t>(2 * i);
+      block.picked[at] = static_cast<std::uint8_t>(column.first - block.looked_at);
+      block.picked[at + 1] = static_cast<std::uint8_t>(column.first + 1 - block.looked_at);
+      block.weights[at] = column.weight_first;
+      block.weights[at + 1] = column.weight_second;
+    }
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+template <class Number>
+__m128i load(const Number* from) {
+  return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
+}
+
+/// A row of the source at the columns of the result, in units of 1/128.
+void resample(const std::uint8_t* row, const std::vector<Block>& blocks, std::int16_t* to) {
+  for (const Block& block : blocks) {
+    const __m128i pairs = _mm_shuffle_epi8(load(row + block.looked_at), load(block.picked.data()));
+    const __m128i low = _mm_madd_epi16(_mm_cvtepu8_epi16(pairs), load(block.weights.data()));
+    const __m128i high =
+        _mm_madd_epi16(_mm_cvtepu8_epi16(_mm_srli_si128(pairs, 8)), load(block.weights.data() + kBlock));
+    const __m128i sums = _mm_packs_epi32(_mm_srai_epi32(low, 4), _mm_srai_epi32(high, 4));
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to + block.begin), sums);
+  }
+}
+
+void blend(const std::int16_t* __restrict first, const std::int16_t* __restrict second, const Between& row, int columns,
+           std::uint8_t* __restrict to) {
+  for (int x = 0; x < columns; ++x) {
+    const auto a = static_cast<std::int16_t>((row.weight_first * first[x]) >> 16);
+    const auto b = static_cast<std::int16_t>((row.weight_second * second[x]) >> 16);
+    to[x] = static_cast<std::uint8_t>((a + b + 2) >> 2);
+  }
+}
+
+/// Whether every pixel of the result lies between pixels of the source, whose neighbours fit into a block.
+bool fits(const cv::Mat& from, cv::Size size) {
+  const double scale_x = static_cast<double>(from.cols) / size.width,
+               scale_y = static_cast<double>(from.rows) / size.height;
+  return from.type() == CV_8UC1 && size.width >= kBlock && from.cols >= kLoaded && scale_x > kMinScale &&
+         scale_x < kMaxScale && scale_y > kMinScale && scale_y < kMaxScale;
+}
+
+}  // namespace
+
+void shrink(const cv::Mat& from, cv::Size size, cv::Mat& to) {
+  if (!fits(from, size)) return cv::resize(from, to, size, 0, 0, cv::INTER_LINEAR);
+  to.create(size, CV_8UC1);
+  const std::vector<Between> rows = positions(from.rows, size.height);
+  const std::vector<Block> blocks = blocks_of(positions(from.cols, size.width), from.cols);
+  std::array<std::vector<std::int16_t>, 2> resampled;  // rows of the source, even ones and odd ones
+  for (auto& row : resampled) row.resize(static_cast<std::size_t>(size.width));
+  const auto at = [&](int row) { return resampled[static_cast<std::size_t>(row % 2)].data(); };
+  int next = 0;
+  for (int y = 0; y < size.height; ++y) {
+    const Between& row = rows[static_cast<std::size_t>(y)];
+    for (next = std::max(next, row.first); next <= row.first + 1; ++next) resample(from.ptr(next), blocks, at(next));
+    blend(at(row.first), at(row.first + 1), row, size.width, to.ptr(y));
+  }
+}
+
+#else
+
+void shrink(const cv::Mat& from, cv::Size size, cv::Mat& to) {
+  cv::resize(from, to, size, 0, 0, cv::INTER_LINEAR);
+}
+
+#endif
+
+}  // namespace rtd::filter
