@@ -90,7 +90,7 @@ def count(program: pathlib.Path, name: str, frames: int, cpu: int) -> dict:
     with tempfile.TemporaryDirectory(prefix="rtd_instructions_") as folder:
         profile = pathlib.Path(folder) / "profile"
         command = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={profile}", "--compress-strings=no",
-                   "--compress-pos=no", str(program), "--source", str(pathlib.Path(os.environ["RTD_DATA_DIR"]) / clip),
+                   "--compress-pos=no", str(program), "--source", f"tum:{pathlib.Path(os.environ['RTD_DATA_DIR']) / clip}",
                    "--frames", str(frames), *options]
         threads = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "OPENCV_FOR_THREADS_NUM": "1"}
         finished = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, **threads},
