@@ -21,10 +21,13 @@ class DisjointCells {
     return cell;
   }
   void join(int a, int b) {
+    if (parent_[static_cast<std::size_t>(a)] == parent_[static_cast<std::size_t>(b)]) return;
     a = root(a);
     b = root(b);
     parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
   }
+  /// Joins a cell that is still alone with an earlier one.
+  void add_to(int earlier, int cell) { parent_[static_cast<std::size_t>(cell)] = root(earlier); }
 
  private:
   std::vector<int> parent_;
@@ -32,17 +35,16 @@ class DisjointCells {
 
 void join_neighbours(const DepthGrid& grid, const ClusterConfig& config, DisjointCells& sets) {
   const auto step = static_cast<float>(config.step_m), factor = static_cast<float>(config.step_factor_per_m);
-  const auto join_if_near = [&](int a, int b) {
+  const auto are_near = [&](int a, int b) {
     const float za = grid.depth_m[static_cast<std::size_t>(a)], zb = grid.depth_m[static_cast<std::size_t>(b)];
-    if (za <= 0 || zb <= 0) return;
     const float nearer = std::min(za, zb);
-    if (std::abs(za - zb) < step + factor * nearer * nearer) sets.join(a, b);
+    return nearer > 0 && std::abs(za - zb) < step + factor * nearer * nearer;
   };
   for (int row = 0; row < grid.shape.rows; ++row) {
     for (int column = 0; column < grid.shape.columns; ++column) {
-      const int cell = grid.shape.index(column, row);
-      if (column + 1 < grid.shape.columns) join_if_near(cell, cell + 1);
-      if (row + 1 < grid.shape.rows) join_if_near(cell, cell + grid.shape.columns);
+      const int cell = grid.shape.index(column, row), above = cell - grid.shape.columns;
+      if (column > 0 && are_near(cell - 1, cell)) sets.add_to(cell - 1, cell);
+      if (row > 0 && are_near(above, cell)) sets.join(above, cell);
     }
   }
 }
