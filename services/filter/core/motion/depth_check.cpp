@@ -91,42 +91,45 @@ class ReferenceCheck {
     const Eigen::ArrayXf z_reference = turned.col(2) + translation_.z();
     const Eigen::ArrayXf u_px = fx_ * (turned.col(0) + translation_.x()) / z_reference + cx_;
     const Eigen::ArrayXf v_px = fy_ * (turned.col(1) + translation_.y()) / z_reference + cy_;
+    const Eigen::ArrayXf distance2 = turned.square().rowwise().sum();
+    // tau(z) = floor + k * sqrt(2) * sigma(z), Eq. (4): both depths are uncertain.
+    const Eigen::ArrayXf tau =
+        tau_floor_m_ + tau_sigmas_ * (sigma_offset_m_ + sigma_factor_per_m_ * z_reference * z_reference);
+    const Eigen::ArrayXf nearest = z_reference - tau, farthest = z_reference + tau;
     const std::vector<std::int32_t> seen = cells_at(u_px, v_px, z_reference, view_.grid.shape);
     for (Eigen::Index i = 0; i < turned.rows(); ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      if (seen[at] >= 0) compare(turned.row(i), static_cast<std::size_t>(seen[at]), measured.cell[at], evidence);
+      const std::int32_t there = seen[static_cast<std::size_t>(i)];
+      if (there < 0 || view_.grid.near_m[static_cast<std::size_t>(there)] <= 0) continue;
+      if (distance2[i] < never_oblique_m_ * never_oblique_m_ && oblique(turned.row(i))) continue;
+      compare({nearest[i], farthest[i]}, static_cast<std::size_t>(there), measured.cell[static_cast<std::size_t>(i)],
+              evidence);
     }
   }
 
  private:
   static constexpr std::int64_t kOldNs = 400'000'000, kRecentNs = 700'000'000;
 
+  /// The depth (m) of a cell in the view, give or take its tolerance.
+  struct Range {
+    float nearest, farthest;
+  };
+
   /// One cell of the current frame with the cell `i` of the view on which it falls.
-  void compare(const Eigen::Array3f& turned, std::size_t i, std::size_t cell, DepthEvidence& evidence) const {
-    const float z = turned.z() + translation_.z();
-    const float near_m = view_.grid.near_m[i], far_m = view_.grid.far_m[i];
-    if (near_m <= 0 || oblique(turned)) return;
-    const float tau = tolerance_m(z);
-    if (near_m > z + tau) {
+  void compare(const Range& expected, std::size_t i, std::size_t cell, DepthEvidence& evidence) const {
+    if (view_.grid.near_m[i] > expected.farthest) {
       ++evidence.violated[cell];
       if (recent_) evidence.settled[cell] = kSeenThrough;
-    } else if (far_m > z - tau) {
+    } else if (view_.grid.far_m[i] > expected.nearest) {
       if (view_.dynamic[i] == 0) ++evidence.consistent[cell];
       if (old_) ++evidence.lasting[cell];
       if (old_ && recent_ && evidence.settled[cell] == 0) evidence.settled[cell] = kSeenThere;
     }
   }
 
-  /// Do the two viewing rays differ too much? From afar they cannot: sin(angle) <= baseline / distance.
+  /// Do the two viewing rays differ too much? Beyond never_oblique_m_ they cannot: sin(angle) <= baseline / distance.
   bool oblique(const Eigen::Vector3f& turned) const {
-    if (turned.squaredNorm() >= never_oblique_m_ * never_oblique_m_) return false;
     const Eigen::Vector3f p_reference = turned + translation_;
     return turned.dot(p_reference) < min_cosine_ * turned.norm() * p_reference.norm();
-  }
-
-  /// tau(z) = floor + k * sqrt(2) * sigma(z), Eq. (4): both depths are uncertain.
-  float tolerance_m(float z) const {
-    return tau_floor_m_ + tau_sigmas_ * (sigma_offset_m_ + sigma_factor_per_m_ * z * z);
   }
 
   const View& view_;

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -36,6 +38,42 @@ void widen_ranges(DepthGrid& grid) {
   }
 }
 
+struct DepthLimits {
+  float scale_m, min_m, max_m;
+};
+
+constexpr std::size_t kBlockCells = 32, kSamplesOfCell = 4;
+using SampleBlock = std::array<std::array<std::uint16_t, kBlockCells>, kSamplesOfCell>;
+
+struct RangeBlock {
+  std::array<float, kBlockCells> typical_m, near_m, far_m;
+};
+
+/// Per cell the least, the lower middle one and the largest of its samples within the limits; of fewer than two of
+/// them, what an unmeasured cell has. Without branches, for vector instructions: samples beyond the limits are sorted
+/// last.
+RangeBlock ranges_of(const SampleBlock& samples, const DepthLimits& limits) {
+  RangeBlock ranges;
+  for (std::size_t i = 0; i < kBlockCells; ++i) {
+    const auto value_m = [&](std::size_t k) { return static_cast<float>(samples[k][i]) * limits.scale_m; };
+    const auto is_within = [&](float m) { return (m >= limits.min_m) & (m <= limits.max_m); };
+    const auto or_last = [&](float m) { return is_within(m) ? m : kUnmeasuredNear; };
+    const auto lesser = [](float x, float y) { return x < y ? x : y; };
+    const auto greater = [](float x, float y) { return x < y ? y : x; };
+    const float a = or_last(value_m(0)), b = or_last(value_m(1)), c = or_last(value_m(2)), d = or_last(value_m(3));
+    const float low = lesser(a, b), high = greater(a, b), low_2 = lesser(c, d), high_2 = greater(c, d);
+    const float first = lesser(low, low_2), last = greater(high, high_2);
+    const float inner = greater(low, low_2), inner_2 = lesser(high, high_2);
+    const float second = lesser(inner, inner_2), third = greater(inner, inner_2);
+    const bool has_two = second < kUnmeasuredNear, has_three = third < kUnmeasuredNear,
+               has_four = last < kUnmeasuredNear;
+    ranges.near_m[i] = has_two ? first : kUnmeasuredNear;
+    ranges.typical_m[i] = has_three ? second : (has_two ? first : 0.0F);
+    ranges.far_m[i] = has_four ? last : (has_three ? third : (has_two ? second : 0.0F));
+  }
+  return ranges;
+}
+
 }  // namespace
 
 void DepthGridSampler::fit(const vision::RgbdImage& image) {
@@ -65,27 +103,24 @@ void DepthGridSampler::fit(const vision::RgbdImage& image) {
 DepthGrid DepthGridSampler::sample(const vision::RgbdImage& image) {
   fit(image);
   const auto cells = static_cast<std::size_t>(shape_.size());
-  DepthGrid grid{shape_, std::vector<float>(cells), std::vector<float>(cells, kUnmeasuredNear),
-                 std::vector<float>(cells)};
-  const auto scale_m = static_cast<float>(image.depth_scale_m);
-  const auto min_m = static_cast<float>(min_depth_m_), max_m = static_cast<float>(max_depth_m_);
+  DepthGrid grid{shape_, std::vector<float>(cells), std::vector<float>(cells), std::vector<float>(cells)};
   const cv::Mat depth = image.depth.isContinuous() ? image.depth : image.depth.clone();
   const auto* raw = depth.ptr<std::uint16_t>();
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    std::array<float, kSamples> values{};  // ascending
-    std::size_t count = 0;
-    for (std::size_t k = 0; k < kSamples; ++k) {
-      const int pixel = pixels_[cell * kSamples + k];
-      const float value_m = pixel < 0 ? 0.0F : static_cast<float>(raw[pixel]) * scale_m;
-      if (value_m < min_m || value_m > max_m) continue;
-      std::size_t place = count++;
-      for (; place > 0 && values[place - 1] > value_m; --place) values[place] = values[place - 1];
-      values[place] = value_m;
+  const DepthLimits limits{static_cast<float>(image.depth_scale_m), static_cast<float>(min_depth_m_),
+                           static_cast<float>(max_depth_m_)};
+  static_assert(kSamples == kSamplesOfCell);
+  SampleBlock samples{};
+  for (std::size_t begin = 0; begin < cells; begin += kBlockCells) {
+    const std::size_t count = std::min(kBlockCells, cells - begin);
+    const int* pixel = &pixels_[begin * kSamples];
+    for (std::size_t cell = 0; cell < count; ++cell) {
+      for (int k = 0; k < kSamples; ++k, ++pixel)
+        samples[static_cast<std::size_t>(k)][cell] = *pixel < 0 ? std::uint16_t{0} : raw[*pixel];
     }
-    if (2 * count < kSamples) continue;  // half of the samples must be measured
-    grid.depth_m[cell] = values[(count - 1) / 2];
-    grid.near_m[cell] = values[0];
-    grid.far_m[cell] = values[count - 1];
+    const RangeBlock ranges = ranges_of(samples, limits);
+    std::copy_n(ranges.typical_m.begin(), count, grid.depth_m.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::copy_n(ranges.near_m.begin(), count, grid.near_m.begin() + static_cast<std::ptrdiff_t>(begin));
+    std::copy_n(ranges.far_m.begin(), count, grid.far_m.begin() + static_cast<std::ptrdiff_t>(begin));
   }
   widen_ranges(grid);
   return grid;
