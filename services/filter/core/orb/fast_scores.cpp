@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/orb/fast_scores.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
@@ -168,8 +169,8 @@ RTD_AVX2 void keep_peaks_32(const Row& row, std::ptrdiff_t step) {
 /// The pixels next to the area.
 void clear_around(const cv::Rect& area, cv::Mat& scores) {
   const int left = area.x - 1, top = area.y - 1, right = area.x + area.width, bottom = area.y + area.height;
-  for (const int y : {top, bottom}) scores(cv::Rect(left, y, area.width + 2, 1)).setTo(0);
-  for (const int x : {left, right}) scores(cv::Rect(x, area.y, 1, area.height)).setTo(0);
+  for (const int y : {top, bottom}) std::fill_n(scores.ptr(y) + left, area.width + 2, std::uint8_t{0});
+  for (int y = area.y; y < bottom; ++y) scores.ptr(y)[left] = scores.ptr(y)[right] = 0;
 }
 
 struct Kernels {
