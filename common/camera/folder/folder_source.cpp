@@ -9,9 +9,11 @@
 #include <cmath>
 #include <utility>
 
+#include "common/camera/calibration_forms.hpp"
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/folder/ground_truth.hpp"
 #include "common/camera/recording/ros_images.hpp"
+#include "common/io/text.hpp"
 #include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
@@ -105,6 +107,31 @@ std::optional<Calibration> calibration_by_name(const fs::path& folder, std::opti
   return std::nullopt;
 }
 
+/// Settings of other programs beside the data, under names that do not speak for them: "orb2.yaml".
+std::vector<std::pair<std::string, std::string>> settings_beside(const fs::path& folder) {
+  std::vector<std::pair<std::string, std::string>> found;  // file and form
+  for (const std::string& file : find_files(folder, "*.y*ml")) {
+    try {
+      const std::optional<std::string> text = io::read_text(folder / file);
+      const auto form = text ? read_calibration_form(*text, file) : std::nullopt;
+      if (form) found.emplace_back(file, form->form);
+    } catch (const SourceError&) {  // of a lens that no model fits
+    }
+  }
+  return found;
+}
+
+/// Loads what a TUM folder may have, else throws; settings of another program are named, not guessed at.
+Calibration required_calibration(const fs::path& folder, const std::string& uri) {
+  const auto settings = settings_beside(folder);
+  if (settings.empty()) return load_calibration(folder);
+  std::string files;
+  for (const auto& [file, form] : settings) files += fmt::format("{}{} ({})", files.empty() ? "" : ", ", file, form);
+  throw SourceError(
+      fmt::format("no calibration for {}, but beside the data: {}. Choose one: --source '{}{}calibration={}'",
+                  folder.string(), files, uri, uri.find('?') == std::string::npos ? '?' : '&', settings.front().first));
+}
+
 /// A path without the folder that it is said of.
 std::string inside(const fs::path& folder, const std::string& path) {
   const std::string start = (folder / "").string();
@@ -188,7 +215,7 @@ std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages&
 
 void FolderSource::calibrate(const FirstImages& first) {
   const std::optional<Calibration> found = calibration_of_files(first);
-  const Calibration calibration = found ? *found : load_calibration(contents_.folder);
+  const Calibration calibration = found ? *found : required_calibration(contents_.folder, info_.uri);
   apply(calibration, info_);
   y_up_ = calibration.y_up;
   note(fmt::format("camera: {} by {}", camera_text(info_.camera), inside(contents_.folder, calibration.origin)));

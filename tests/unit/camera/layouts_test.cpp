@@ -447,6 +447,13 @@ TEST_F(FieldData, settings_of_orb_slam_give_the_camera) {
   }
 }
 
+TEST_F(FieldData, settings_beside_the_data_are_named_with_the_source_that_takes_them) {
+  EXPECT_THAT(
+      [&] { make_source(at("orb_slam_settings")); },
+      ThrowsMessage<SourceError>(AllOf(HasSubstr("orb2.yaml (ORB-SLAM2 settings), orb3.yaml (ORB-SLAM3 settings)"),
+                                       HasSubstr("orb_slam_settings?calibration=orb2.yaml'"))));
+}
+
 TEST_F(FieldData, stamps_that_are_durations_need_a_rate) {
   EXPECT_THAT([&] { make_source(at("stamps_are_durations")); }, ThrowsMessage<SourceError>(HasSubstr("are not times")));
   EXPECT_THAT(test::play(at("stamps_are_durations?fps=30")), SizeIs(8));
