@@ -275,7 +275,8 @@ int dispatch(const CLI::App& app, const Requests& requests) {
     std::cout << "rtd " << RTD_VERSION << '\n';
     return service::kOk;
   }
-  std::cout << app.help();
+  // Not app.help(), which is that of the given command.
+  std::cout << app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal);
   return service::kOk;
 }
 

@@ -188,15 +188,17 @@ void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings&
   }
 }
 
-std::string why_no_camera(const std::string& device, const std::vector<camera::FoundCamera>& cameras) {
+std::string why_no_camera(const std::string& scheme, const std::string& device,
+                          const std::vector<camera::FoundCamera>& cameras) {
+  const std::string uri = scheme + ":" + device;
   const auto is_it = [&](const camera::FoundCamera& found) {
-    return device.empty() ? found.problem.empty() : found.uri == "openni2:" + device;
+    return device.empty() ? found.problem.empty() : found.uri == uri;
   };
   const auto found = std::ranges::find_if(cameras, is_it);
   if (found != cameras.end() && found->problem.empty()) return {};
   Findings findings;
   describe_cameras(cameras, findings);
-  std::string text = "--source openni2:" + device + ": the camera cannot be used, 'rtd doctor' says:";
+  std::string text = "--source '" + uri + "': the camera cannot be used, 'rtd doctor' says:";
   for (const Finding& finding : findings) text += "\n  " + finding.text;
   return text;
 }

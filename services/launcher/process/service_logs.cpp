@@ -67,6 +67,7 @@ void ServiceLogs::add(const std::string& service, const std::string& line) {
 void ServiceLogs::show(const std::string& service, Log& log, const std::string& line) {
   const std::string event = event_of(line);
   if (event.empty()) return;
+  if (!hidden_.empty() && event.find("event=" + hidden_ + " ") != std::string::npos) return;
   ++log.shown;
   if (log.shown <= kMaxShownPerService) terminal_.warn("  " + event);
   if (log.shown == kMaxShownPerService)

@@ -45,6 +45,8 @@ class ServiceLogs {
   std::vector<std::string> reason(const std::string& service) const;
   std::vector<std::string> tail(const std::string& service) const;
   std::string path(const std::string& service) const { return folder_ + "/" + service + ".log"; }
+  /// What the launcher has said itself: warnings of this event are only written.
+  void hide(const std::string& event) { hidden_ = event; }
   /// From now on lines are only written, not shown.
   void mute() { muted_ = true; }
 
@@ -59,6 +61,7 @@ class ServiceLogs {
   std::string folder_;
   Terminal& terminal_;
   std::map<std::string, Log> logs_;
+  std::string hidden_;
   bool muted_ = false;
 };
 

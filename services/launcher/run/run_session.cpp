@@ -61,7 +61,10 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   require_free_domain();
   clear_out_dir(setup_);
   events_ = setup_.source_remarks;  // the terminal shows them as warnings of the camera
-  if (!setup_.depth_doubt.empty()) note(setup_.depth_doubt);
+  if (!setup_.depth_doubt.empty()) {
+    note(setup_.depth_doubt);
+    logs_.hide("depth_unit_doubtful");
+  }
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
   ServicePlan camera = plans.back();

@@ -16,6 +16,7 @@
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/ros2/names.hpp"
 #include "common/run_record/run_record.hpp"
+#include "services/camera/realsense/realsense_device.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -23,12 +24,26 @@ namespace rtd::launcher {
 using service::ConfigError;
 namespace {
 
-/// No one plugs a camera in because a run waits for it. Cameras of the network may still announce themselves.
-void require_local_camera(const std::string& source) {
-  if (!camera::is_device(source)) return;
-  const camera::DeviceUri uri = camera::parse_device_uri(source);
-  if (uri.scheme != "openni2" || uri.recorded) return;
-  const std::string why = why_no_camera(uri.device, camera::find_openni2_cameras());
+constexpr int kLooksForAnnouncement = 3;  // of a second each, until a camera on DDS announces itself
+
+std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options) {
+  std::string why;
+  for (int look = 0; look < kLooksForAnnouncement; ++look) {
+    why = why_no_camera("realsense-dds", serial, camera::find_realsense_cameras(options));
+    if (why.empty()) return {};
+  }
+  why += fmt::format("\n  no such camera announces itself on realsense/device-info in DDS domain {}", options.domain);
+  return options.network.loopback_only ? why + "; on this host only: --profile lan adds the network" : why;
+}
+
+/// No one plugs a camera in because a run waits for it.
+void require_camera(const RunSetup& setup) {
+  if (!camera::is_device(setup.source)) return;
+  const camera::DeviceUri uri = camera::parse_device_uri(setup.source);
+  if (uri.recorded) return;
+  const std::string why = uri.scheme == "realsense-dds"
+                              ? why_no_realsense(uri.device, setup.bus_options)
+                              : why_no_camera(uri.scheme, uri.device, camera::find_openni2_cameras());
   if (!why.empty()) throw ConfigError(why);
 }
 
@@ -90,7 +105,7 @@ const char* usual_pace(const RunSetup& setup) {
 void look_at_source(RunSetup& setup) {
   if (camera::is_live(setup.source)) {
     camera::check_live_uri(setup.source);
-    require_local_camera(setup.source);
+    require_camera(setup);
     setup.total_frames = setup.frames;
     return;
   }

@@ -41,6 +41,11 @@ TEST_F(FrontTest, without_arguments_it_prints_the_help) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("Commands:"), HasSubstr("Tools:"), HasSubstr("Services:")));
 }
 
+TEST_F(FrontTest, the_command_help_prints_all_commands) {
+  EXPECT_EQ(rtd_.run({"help"}), 0);
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("Commands:"), HasSubstr("Tools:"), HasSubstr("Services:")));
+}
+
 TEST_F(FrontTest, help_of_a_run_names_every_engine_of_the_detector) {
   EXPECT_EQ(rtd_.run({"run", "--help"}), 0);
   EXPECT_THAT(std::regex_replace(rtd_.output(), std::regex("\\s+"), " "), HasSubstr(msg::kEngineNames));

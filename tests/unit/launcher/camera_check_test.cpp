@@ -37,14 +37,17 @@ TEST(CameraCheckTest, says_what_the_build_supports_when_there_is_none) {
 }
 
 TEST(CameraCheckTest, a_run_without_its_camera_gets_the_answer_of_the_doctor) {
-  EXPECT_THAT(why_no_camera("", {}), HasSubstr("'rtd doctor' says:\n  cameras: none is plugged in"));
+  EXPECT_THAT(why_no_camera("openni2", "", {}), HasSubstr("'rtd doctor' says:\n  cameras: none is plugged in"));
   const std::vector<camera::FoundCamera> cameras = {{"openni2:1d27/0609@1/5", "PrimeSense", {}, ""},
                                                     {"openni2:2bc5/0401@1/6", "Astra", {}, "no permission"}};
-  EXPECT_EQ(why_no_camera("", cameras), "");
-  EXPECT_EQ(why_no_camera("1d27/0609@1/5", cameras), "");
-  EXPECT_THAT(why_no_camera("2bc5/0401@1/6", cameras), HasSubstr("(Astra): no permission"));
-  EXPECT_THAT(why_no_camera("1d27/0609@1/9", cameras),
+  EXPECT_EQ(why_no_camera("openni2", "", cameras), "");
+  EXPECT_EQ(why_no_camera("openni2", "1d27/0609@1/5", cameras), "");
+  EXPECT_THAT(why_no_camera("openni2", "2bc5/0401@1/6", cameras), HasSubstr("(Astra): no permission"));
+  EXPECT_THAT(why_no_camera("openni2", "1d27/0609@1/9", cameras),
               HasSubstr("camera: --source openni2:1d27/0609@1/5 (PrimeSense)"));
+  const std::vector<camera::FoundCamera> on_dds = {{"realsense-dds:1234", "RealSense", {}, ""}};
+  EXPECT_EQ(why_no_camera("realsense-dds", "1234", on_dds), "");
+  EXPECT_THAT(why_no_camera("realsense-dds", "99", on_dds), HasSubstr("--source 'realsense-dds:99': the camera"));
 }
 
 }  // namespace

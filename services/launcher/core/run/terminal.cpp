@@ -55,7 +55,7 @@ void Terminal::status(const std::string& text, std::chrono::milliseconds now) {
   if (options_.interactive) {
     out_ << "\r\033[K" << line.substr(0, options_.columns - 1) << std::flush;
   } else {
-    out_ << line << '\n' << std::flush;
+    out_ << wrapped(line) << '\n' << std::flush;
   }
 }
 
