@@ -21,7 +21,6 @@ using msg::FilterMode;
 struct Techniques {
   // What may move
   bool motion_levels = true, depth_masks = true, flat_objects = true, object_holes = true;
-  bool person_masks = true;
   // What moves
   bool depth_check = true, feature_votes = true, look_back = true, arrivals = true;
   bool noise_aware_tau = true, mover_memory = true, mover_tracks = true, surface_poses = true;
@@ -46,7 +45,6 @@ inline constexpr NamedTechnique kTechniques[] = {
     {"depth_masks", &Techniques::depth_masks, "the whole box is the object"},
     {"flat_objects", &Techniques::flat_objects, "a poster of a person is a person"},
     {"object_holes", &Techniques::object_holes, "cells without depth in a box are background"},
-    {"person_masks", &Techniques::person_masks, "masks of pixels that come with the boxes are not used"},
     {"depth_check", &Techniques::depth_check, "no multi-view check of range images"},
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote for their surface"},
     {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},

@@ -63,7 +63,6 @@ ObjectTracker::ObjectTracker(const FilterConfig& config)
       masks_(config.masks),
       use_tracks_(config.techniques.box_tracks),
       use_flow_(config.techniques.mask_flow),
-      use_pixels_(config.techniques.person_masks),
       levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
                                               : MotionLevels(config.motion_levels).all_high()),
       tracks_(config.tracks) {}
@@ -80,7 +79,7 @@ std::vector<SceneObject> ObjectTracker::track(const DetectorUpdate& detector, co
 
 DetectionBatch ObjectTracker::usable_part(const DetectionBatch& batch, const vision::RgbdImage& image) const {
   DetectionBatch usable = usable_batch(batch, levels_);
-  if (!use_pixels_ || !fit(usable.masks, image.color_bgr.size())) usable.masks = {};
+  if (!fit(usable.masks, image.color_bgr.size())) usable.masks = {};
   return usable;
 }
 

@@ -40,7 +40,7 @@ class ObjectTracker {
 
   BoxTrackConfig config_;
   MaskConfig masks_;
-  bool use_tracks_, use_flow_, use_pixels_;
+  bool use_tracks_, use_flow_;
   MotionLevels levels_;
   BoxTracks tracks_;
   MaskFlow flow_;

@@ -41,8 +41,7 @@ const std::vector<ModeEntry>& table() {
   static const std::vector<ModeEntry> entries{
       {FilterMode::kOff, only({}), make<RtdJudge>},
       {FilterMode::kSemantic,
-       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::person_masks, &T::box_tracks, &T::mask_flow,
-             &T::more_features}),
+       only({&T::motion_levels, &T::depth_masks, &T::object_holes, &T::box_tracks, &T::mask_flow, &T::more_features}),
        make<RtdJudge>},
       {FilterMode::kGeometry,
        only({&T::depth_check, &T::feature_votes, &T::look_back, &T::arrivals, &T::noise_aware_tau, &T::mover_memory,
