@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from yolov5_onnx.errors import ConversionError
+from yolov5_onnx.errors import ConversionError, read_bytes
 
 MAX_JSON_BYTES = 4 << 20
 MAX_WEIGHT_BYTES = 64 << 20
@@ -65,17 +65,6 @@ def list_of(entry, key, where):
     if not isinstance(entry, dict) or not isinstance(entry.get(key), list):
         raise ConversionError(f"{where}: there is no list '{key}'")
     return entry[key]
-
-
-def read_bytes(path, limit):
-    try:
-        with open(path, "rb") as file:
-            data = file.read(limit + 1)
-    except OSError as error:
-        raise ConversionError(f"{path}: {error.strerror}") from error
-    if len(data) > limit:
-        raise ConversionError(f"{path}: more than {limit >> 20} MiB, which no such file has")
-    return data
 
 
 def load_graph_model(json_path, weights_path):

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from yolov5_onnx.errors import ConversionError
+from yolov5_onnx.errors import ConversionError, read_bytes
 
 from .flatbuffer import root_table
 
@@ -110,13 +110,7 @@ def read_model(data):
 
 
 def load_model(path):
-    try:
-        with open(path, "rb") as file:
-            data = file.read(MAX_FILE_BYTES + 1)
-    except OSError as error:
-        raise ConversionError(f"{path}: {error.strerror}") from error
-    if len(data) > MAX_FILE_BYTES:
-        raise ConversionError(f"{path}: more than {MAX_FILE_BYTES >> 20} MiB, which no network for masks has")
+    data = read_bytes(path, MAX_FILE_BYTES)
     try:
         return read_model(data)
     except ConversionError as error:
