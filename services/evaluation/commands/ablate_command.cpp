@@ -203,6 +203,7 @@ VariantRun run_variant(const AblateOptions& options, const VariantTask& task) {
 
 std::string result_text(const Measurement& m) {
   if (!m.failure.empty()) return "failed: " + m.failure;
+  if (m.ate_poses == 0) return fmt::format("no ATE, coverage {:.3f} of {:.0f} frames", m.coverage, m.frames);
   return fmt::format("ATE {:.4f} m over {:.0f} poses, coverage {:.3f} of {:.0f} frames", m.ate_m, m.ate_poses,
                      m.coverage, m.frames);
 }
@@ -293,7 +294,8 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
   command->add_option("--detector", options.detector, "auto: when weights are found; off: modes that need none")
       ->check(CLI::IsMember({"auto", "off"}))
       ->capture_default_str();
-  command->add_option("--model", options.model, "Detector weights, ONNX");
+  command->add_option("--model", options.model,
+                      "The network: yolox-nano, nanodet-g, yolov5-lite, or an ONNX file; default: as 'rtd run'");
   command->add_flag("--json", options.json, "JSON on standard output");
   command->add_flag("--resume", options.resume, "Keep finished runs of the same settings in the folder");
 }

@@ -180,6 +180,15 @@ void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOp
   }
 }
 
+/// What an alignment leaves of two poses is no error.
+void leave_out_ate_of_two(Evaluation& evaluation, std::ostream& err) {
+  const std::size_t poses = evaluation.ate.error_m.count;
+  if (poses == 0 || poses >= kFewestAtePoses) return;
+  evaluation.ate.error_m = {};
+  err << fmt::format("rtd eval: note: only {} poses have a true one, and any {} fit each other: no ATE\n", poses,
+                     kFewestAtePoses - 1);
+}
+
 std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
   const std::int64_t start_ns = e.ate.points.empty() ? 0 : e.ate.points.front().stamp_ns;
   return fmt::format("estimate               {} ({} poses)\nground truth           {} ({} poses)\n", options.estimate,
@@ -189,7 +198,8 @@ std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
                      "min", "max", "", "pairs") +
          row(options.scale ? "ATE (Sim(3))" : "ATE (SE(3))", e.ate.error_m, 1, "m") +
          rpe_rows("RPE per second", e.rpe_per_second) + rpe_rows("RPE per frame", e.rpe_per_frame) +
-         rpe_rows("RPE per metre", e.rpe_per_metre) + "\n" + figure_rows(drift_figures(e.drift, options.scene_depth_m));
+         rpe_rows("RPE per metre", e.rpe_per_metre) +
+         (e.ate.error_m.count == 0 ? "" : "\n" + figure_rows(drift_figures(e.drift, options.scene_depth_m)));
 }
 
 /// Where the states of the poses are known.
@@ -259,6 +269,7 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
       err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
       return service::kRunFailed;
     }
+    leave_out_ate_of_two(evaluation, err);
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
     out << text_of(evaluation, integrity_of(inputs), options);
     if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))

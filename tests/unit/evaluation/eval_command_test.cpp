@@ -75,6 +75,14 @@ TEST_F(EvalCommand, reads_kitti_with_a_rate_and_pairs_by_number_without) {
   EXPECT_THAT(needless.err, HasSubstr("both files have stamps"));
 }
 
+TEST_F(EvalCommand, two_poses_have_no_error_of_a_trajectory) {
+  const std::string two = folder_.write("two.txt", tum_text(winding_path(2, 0.1)));
+  const Outcome outcome = run({two, truth_});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("ATE (SE(3))            no pairs"), Not(HasSubstr("drift"))));
+  EXPECT_THAT(outcome.err, HasSubstr("only 2 poses have a true one, and any 2 fit each other: no ATE"));
+}
+
 TEST_F(EvalCommand, prints_a_table_with_all_errors_and_units) {
   const Outcome outcome = run({estimate_, truth_});
   EXPECT_EQ(outcome.code, 0);

@@ -20,8 +20,7 @@ constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
 constexpr std::array<const char*, msg::kStageSlamTotal + 1> kSlamStageNames{
     "slam.match", "slam.local_map", "slam.pose", "slam.keyframe", "slam.mapping", "slam.total"};
 
-constexpr std::size_t kFewestAtePoses = 3;  // two always fit, whatever they are
-constexpr float kRanMs = 0.01F;             // a shorter time only means that the stage had nothing to do
+constexpr float kRanMs = 0.01F;  // a shorter time only means that the stage had nothing to do
 
 bool is_tracked(const run_record::FrameRecord& frame) {
   return msg::is_measured(frame.tracking.state);

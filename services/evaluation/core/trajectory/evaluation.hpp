@@ -42,6 +42,9 @@ struct EvaluationOptions : AteOptions {
   double max_gap_s = 0.5;  ///< longer gaps between poses count as lost when there is no frame list
 };
 
+/// Fewer poses have no ATE: any two fit any other two.
+inline constexpr std::size_t kFewestAtePoses = 3;
+
 /// All errors of an estimate compared with its ground truth.
 struct Evaluation {
   std::size_t estimate_poses = 0, groundtruth_poses = 0;
