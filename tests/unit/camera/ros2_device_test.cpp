@@ -393,6 +393,50 @@ TEST_F(Ros2DeviceTest, dense_rows_with_a_wrong_step_are_used_and_remarked_once) 
   EXPECT_THAT(played.info().remarks, ElementsAre(AllOf(HasSubstr("/c"), HasSubstr("'step' is 0"))));
 }
 
+TEST_F(Ros2DeviceTest, dense_depth_whose_step_counts_pixels_is_used) {
+  info();
+  for (const double stamp_s : {1.0, 1.1}) {
+    color(stamp_s);
+    msg::Image depth = ImageBag::image(ImageBag::depth(), "16UC1", stamp_s);
+    depth.step = ImageBag::kWidth;  // not bytes
+    add("/d", "sensor_msgs/Image", depth);
+  }
+  DeviceSource played = source();
+  EXPECT_EQ(only_frame(played).image.depth.at<std::uint16_t>(23, 31), 1500);
+  EXPECT_THAT(played.info().remarks, ElementsAre(AllOf(HasSubstr("/d"), HasSubstr("'step' is 32"))));
+}
+
+TEST_F(Ros2DeviceTest, dense_rows_whose_step_is_too_long_are_used) {
+  info();
+  for (const double stamp_s : {1.0, 1.1}) {
+    msg::Image color = ImageBag::image(ImageBag::color(), "bgr8", stamp_s);
+    color.step = 4096;
+    add("/c", "sensor_msgs/Image", color);
+    depth(stamp_s);
+  }
+  DeviceSource played = source();
+  EXPECT_EQ(only_frame(played).image.color_bgr.at<cv::Vec3b>(23, 31), cv::Vec3b(100, 101, 102));
+  EXPECT_THAT(played.info().remarks, ElementsAre(HasSubstr("'step' is 4096")));
+}
+
+TEST_F(Ros2DeviceTest, floats_in_millimetres_are_recognised) {
+  info();
+  for (const double stamp_s : {1.0, 1.1}) {
+    color(stamp_s);
+    depth(stamp_s, cv::Mat(24, 32, CV_32FC1, cv::Scalar(1500.0)), "32FC1");
+  }
+  DeviceSource played = source();
+  const SourceFrame frame = only_frame(played);
+  EXPECT_NEAR(frame.image.depth.at<std::uint16_t>(3, 3) * frame.image.depth_scale_m, 1.5, 1e-3);
+}
+
+TEST_F(Ros2DeviceTest, a_camera_info_of_zeros_is_refused_by_its_value) {
+  info(ImageBag::camera_info(0));  // a driver without a calibration file
+  for (int i = 0; i < 20; ++i) both(1.0 + 0.1 * i);
+  DeviceSource played = source();
+  EXPECT_THAT([&] { played.open(); }, ThrowsMessage<SourceError>(AllOf(HasSubstr("/i"), HasSubstr("fx"))));
+}
+
 TEST_F(Ros2DeviceTest, images_without_stamps_go_by_their_arrival) {
   info();
   for (int i = 0; i < 6; ++i) both(0);
