@@ -53,6 +53,10 @@ void from_value(const Json& json, std::array<T, N>& values) {
   for (std::size_t i = 0; i < N; ++i) from_value(json.at(i), values[i]);
 }
 
+Json masks_json(const vision::PersonMasks& masks) {
+  return {{"columns", masks.columns}, {"rows", masks.rows}, {"labels", to_base64(masks.labels)}};
+}
+
 Json frames_json(const std::vector<FrameRecord>& frames) {
   Json table;
   const FrameRecord none;
@@ -134,13 +138,28 @@ Json record_json(const RunRecord& record) {
                               {"round_trip_ms", to_value(clock.round_trip_ms)}});
   }
   for (const SampleFrame& sample : record.samples) {
-    json["samples"].push_back(
-        {{"seq", sample.seq}, {"jpeg", to_base64(sample.jpeg)}, {"features", pack(sample.features)}});
+    Json entry = {{"seq", sample.seq}, {"jpeg", to_base64(sample.jpeg)}, {"features", pack(sample.features)}};
+    if (!sample.masks.empty()) entry["masks"] = masks_json(sample.masks);
+    json["samples"].push_back(std::move(entry));
   }
   for (const JudgedFrame& frame : record.judged_frames) {
     json["judged_frames"].push_back({{"stamp_ns", frame.stamp_ns}, {"features", pack(frame.features)}});
   }
   return json;
+}
+
+/// Runs without masks have none, and earlier versions did not write them.
+vision::PersonMasks read_masks(const Json& sample) {
+  const auto json = sample.find("masks");
+  if (json == sample.end()) return {};
+  vision::PersonMasks masks{json->at("columns"), json->at("rows"),
+                            from_base64(json->at("labels").get_ref<const std::string&>())};
+  const bool fits =
+      masks.columns > 0 && masks.rows > 0 &&
+      masks.labels.size() / static_cast<std::size_t>(masks.columns) == static_cast<std::size_t>(masks.rows) &&
+      masks.labels.size() % static_cast<std::size_t>(masks.columns) == 0;
+  if (!fits) throw std::invalid_argument("has masks of another size than their labels");
+  return masks;
 }
 
 void read_lists(const Json& json, RunRecord& record) {
@@ -161,7 +180,7 @@ void read_lists(const Json& json, RunRecord& record) {
   }
   for (const Json& sample : json.at("samples")) {
     record.samples.push_back({sample.at("seq"), from_base64(sample.at("jpeg").get_ref<const std::string&>()),
-                              unpack(sample.at("features"))});
+                              unpack(sample.at("features")), read_masks(sample)});
   }
   for (const Json& frame : json.at("judged_frames"))
     record.judged_frames.push_back({frame.at("stamp_ns"), unpack(frame.at("features"))});

@@ -14,6 +14,7 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
+#include "common/vision/person_masks.hpp"
 
 namespace rtd::run_record {
 
@@ -62,6 +63,7 @@ struct SampleFrame {
   std::uint64_t seq = 0;
   std::vector<std::uint8_t> jpeg;
   std::vector<JudgedFeature> features;
+  vision::PersonMasks masks;  ///< the pixels of people; empty where no masks were sent
 };
 
 struct ProcessUsage {

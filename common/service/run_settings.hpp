@@ -100,6 +100,12 @@ void bind_filter_mode(auto& binder, std::string& mode) {
       .option("--filter,--mode", "Dynamic points");
 }
 
+/// Of section `filter`.
+void bind_person_masks(auto& binder, std::string& use) {
+  binder.choice("person_masks", use, {"on", "off"},
+                "on: use the detector's person masks if it sends them; off: boxes alone");
+}
+
 /// Of section `detector`.
 void bind_model(auto& binder, std::string& model) {
   binder

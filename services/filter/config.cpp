@@ -12,8 +12,7 @@ namespace rtd::filter {
 void ServiceConfig::bind(service::ConfigBinder& binder) {
   service::bind_filter_mode(binder, mode);
   binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector if one runs; off: never wait, never use");
-  binder.choice("person_masks", person_masks, {"on", "off"},
-                "on: use the detector's person masks if it sends them; off: boxes alone");
+  service::bind_person_masks(binder, person_masks);
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
                "asap, lockstep: longest wait for a living detector's boxes of one frame");
   binder.field("feedback_timeout_ms", feedback_timeout_ms, {1, 600000},

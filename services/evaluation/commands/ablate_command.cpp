@@ -22,6 +22,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/evaluation/commands/guarded.hpp"
@@ -295,7 +296,7 @@ void add_ablate_command(CLI::App& app, AblateOptions& options) {
       ->check(CLI::IsMember({"auto", "off"}))
       ->capture_default_str();
   command->add_option("--model", options.model,
-                      "The network: yolox-nano, nanodet-g, yolov5-lite, or an ONNX file; default: as 'rtd run'");
+                      "The network: " + service::known_model_names() + ", or an ONNX file; default: as 'rtd run'");
   command->add_flag("--json", options.json, "JSON on standard output");
   command->add_flag("--resume", options.resume, "Keep finished runs of the same settings in the folder");
 }

@@ -74,6 +74,7 @@ RunResult run_mode(const DemoOptions& options, const std::string& source, const 
   run_options.config = options.config;
   run_options.config.given.push_back({"filter.mode", "--filter", {mode}});
   run_options.frames = options.frames;
+  run_options.show_masks = true;
   run_options.out_dir = (fs::path(options.out_dir) / mode).string();
   return run(run_options);
 }

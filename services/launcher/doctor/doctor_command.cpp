@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/doctor/doctor_command.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -173,6 +175,8 @@ std::vector<camera::FoundCamera> all_cameras(const bus::BusOptions& bus) {
   return cameras;
 }
 
+constexpr int kLooksForAnnouncement = 3;  // of a second each, until a camera on DDS announces itself
+
 int clean(std::ostream& out) {
   const bus::CleanReport report = bus::remove_shm_leftovers();
   for (const bus::ShmFile& file : report.removed) out << "removed  " << file.name << "  " << mib(file.bytes) << '\n';
@@ -202,6 +206,16 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
 }
 
 }  // namespace
+
+std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options) {
+  std::string why;
+  for (int look = 0; look < kLooksForAnnouncement; ++look) {
+    why = why_no_camera("realsense-dds", serial, camera::find_realsense_cameras(options));
+    if (why.empty()) return {};
+  }
+  why += fmt::format("\n  no such camera announces itself on realsense/device-info in DDS domain {}", options.domain);
+  return options.network.loopback_only ? why + "; on this host only: --profile lan adds the network" : why;
+}
 
 int doctor(const DoctorOptions& options, std::ostream& out, std::ostream& err) {
   return service::report_errors<service::ConfigError>("rtd doctor", err, [&] { return check_all(options, out); });

@@ -42,9 +42,12 @@ void check_network(const bus::BusOptions& options, Findings& findings);
 /// A line for each camera with its modes, or what keeps it from being used; one line when there is none.
 void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings& findings);
 
-/// Why the camera of a source "SCHEME:[DEVICE]" cannot be used now, in the words of the doctor: it is not plugged in, or
-/// others are. `device`: its URI or serial number, empty = the first. Empty when it is there.
+/// Why the camera of a source "SCHEME:[DEVICE]" cannot be used now, in the words of the doctor: it is not plugged in,
+/// or others are. `device`: its URI or serial number, empty = the first. Empty when it is there.
 std::string why_no_camera(const std::string& scheme, const std::string& device,
                           const std::vector<camera::FoundCamera>& cameras);
+/// The same of "realsense-dds:[SERIAL]": looks for three seconds for what announces itself on DDS. Throws
+/// bus::BusError.
+std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options);
 
 }  // namespace rtd::launcher

@@ -29,7 +29,8 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
-      keep_features_(options.keep_features) {
+      keep_features_(options.keep_features),
+      with_masks_(options.masks) {
   if (options.secured) {
     peers_.believe_only("camera", camera_);
     peers_.believe_only("filter", filter_);
@@ -54,6 +55,7 @@ std::unique_ptr<Collector::Readers> Collector::subscribe() {
                                                                 const bus::WriterId& writer) {
     deliver([&](Collector& collector) { collector.add(*status, writer); });
   });
+  if (with_masks_) readers->masks = bus_.reader(bus::topics::kPersonMasks, add);
   readers->frames = bus::FrameReader(
       bus_, [deliver](const auto& frame) { deliver([&](Collector& collector) { collector.add_image(frame); }); },
       camera_->callbacks());
@@ -80,12 +82,22 @@ void Collector::add(const msg::ServiceStatus& status, const bus::WriterId& write
   if (peers_.note(status, writer, service::monotonic_ns())) builder_.add(status);
 }
 
+void Collector::add(const msg::Image& masks) {
+  if (masks.encoding != "mono8" || masks.step != masks.width || masks.data.empty() ||
+      masks.data.size() != std::size_t{masks.width} * masks.height)
+    return;
+  const std::lock_guard lock(mutex_);
+  samples_.add_masks(msg::to_ns(masks.header.stamp),
+                     {static_cast<int>(masks.width), static_cast<int>(masks.height), masks.data});
+}
+
 void Collector::add_image(const std::shared_ptr<const msg::FrameView>& frame) {
   std::uint64_t seq = 0;
   {
     const std::lock_guard lock(mutex_);
     seq = builder_.run_seq(frame->seq);
     if (!samples_.wants(seq)) return;
+    if (with_masks_) samples_.expect_masks(seq, frame->stamp_ns);
   }
   images_.push({seq, frame});
 }

@@ -24,6 +24,7 @@ class Collector {
     std::uint64_t samples = 12;
     std::uint64_t total = 0;     ///< frames expected, 0 = unknown
     bool keep_features = false;  ///< for RunRecord::judged_frames
+    bool masks = false;          ///< of people in the samples: the detector computes them for each reader
     bool secured = false;        ///< a heartbeat of camera, filter or slam counts when its sender may write their topic
   };
 
@@ -63,6 +64,7 @@ class Collector {
     bus::Reader<msg::TrackingResult> tracking;
     bus::Reader<msg::FeatureFrame> features;
     bus::Reader<msg::ServiceStatus> status;
+    bus::Reader<msg::Image> masks;
     bus::FrameReader frames;
   };
 
@@ -70,6 +72,7 @@ class Collector {
   void add(const msg::TrackingResult& result);
   void add(const msg::FeatureFrame& features);
   void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
+  void add(const msg::Image& masks);
   void add_image(const std::shared_ptr<const msg::FrameView>& frame);
   service::ProcessGone process_gone() const;
   void encode_samples();
@@ -82,7 +85,7 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
-  bool keep_features_;
+  bool keep_features_, with_masks_;
   std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run

@@ -7,12 +7,15 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <iostream>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/text.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/run_record/run_record.hpp"
@@ -74,6 +77,23 @@ void write_record(const run_record::RunRecord& record, const std::string& out_di
   run_record::write_run_json(record, out_dir + "/run.json");
 }
 
+/// Of a slam that was restarted in its own world trajectory.txt begins with the poses that it published before.
+void join_trajectory(run_record::RunRecord& record, const std::string& out_dir) {
+  const std::string file = out_dir + "/trajectory.txt";
+  const std::optional<std::string> last = io::read_text(file);
+  const auto lines = last ? io::split_lines(*last) : std::vector<io::TextLine>();
+  const std::optional<double> first_s = lines.empty() ? std::nullopt : io::parse_number(lines.front().fields.front());
+  if (!first_s) return;
+  constexpr double kNsPerS = 1e9;
+  const std::int64_t first_ns = std::llround(*first_s * kNsPerS) - 1000;  // stamps are written in microseconds
+  const std::string before = online_trajectory_text(record.frames, first_ns);
+  if (before.empty()) return;
+  io::write_file(file, before + *last);
+  record.events.push_back(
+      fmt::format("slam was restarted with its map: in trajectory.txt the {} poses before are those it had published",
+                  std::ranges::count(before, '\n')));
+}
+
 /// rtd-eval makes the report from run.json and prints the table that ends a run.
 ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals,
                         Terminal& terminal) {
@@ -125,6 +145,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   result.code = exit_code(outcome, session.tracked_any(), run_record::frame_use(record).too_few());
   if (outcome == RunOutcome::kConfigError) return result;
   if (!not_used.empty()) record.events.push_back(not_used);
+  if (session.slam_kept_its_world()) join_trajectory(record, setup.out_dir);
   write_record(record, setup.out_dir);
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;

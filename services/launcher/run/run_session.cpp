@@ -32,7 +32,7 @@ double span_s(const std::vector<run_record::FrameRecord>& frames) {
 
 std::string restart_effect(const std::string& service) {
   if (service == "camera") return ": its frames count from 0 again";
-  if (service == "slam") return ": trajectory.txt starts again, the map from its last checkpoint";
+  if (service == "slam") return ": it continues with the map from its last checkpoint, else with a new one";
   if (service == "record") return ": it continues in a file beside";
   return service == "dense" ? ": static_map.ply starts again" : "";
 }
@@ -46,8 +46,11 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       logs_(setup.out_dir + "/logs", terminal),
       frames_(setup.out_dir),
       collector_(bus, frames_,
-                 {static_cast<std::uint64_t>(setup.launcher.samples), setup.total_frames,
-                  run_record::has_true_masks(setup.source), setup.bus_options.security.enabled()}),
+                 {.samples = static_cast<std::uint64_t>(setup.launcher.samples),
+                  .total = setup.total_frames,
+                  .keep_features = run_record::has_true_masks(setup.source),
+                  .masks = setup.reports_masks(),
+                  .secured = setup.bus_options.security.enabled()}),
       host_(
           [this](const std::string& service, const std::string& line) {
             logs_.add(service, line);
@@ -66,12 +69,24 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
     logs_.hide("depth_unit_doubtful");
   }
   started_ = now();
-  for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(plans[i], now());
+  for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(counted(plans[i]), now());
   ServicePlan camera = plans.back();
   camera.has_served = [this] { return collector_.any_frame(); };
   supervise(camera);
   terminal_.end_status();
   return supervisor_.outcome();
+}
+
+/// Counts whether a restarted slam has a checkpoint to continue with.
+ServicePlan RunSession::counted(ServicePlan plan) {
+  if (plan.name != "slam" || !plan.when_restarted) return plan;
+  plan.when_restarted = [this, checkpoint = plan.when_restarted] {
+    std::vector<std::string> arguments = checkpoint();
+    ++slam_restarts_;
+    if (arguments.empty()) ++slam_worlds_lost_;
+    return arguments;
+  };
+  return plan;
 }
 
 /// Two runs in one domain would mix their frames until the services notice. A replay of another camera's topics is what

@@ -33,6 +33,8 @@ class RunSession {
   /// At the end the first piece that the source left out; may be empty.
   std::string camera_message() const { return collector_.camera_message(); }
   bool tracked_any() const { return collector_.tracked_any(); }
+  /// Slam was restarted, each time with the map of a checkpoint: its poses before and after are in one world.
+  bool slam_kept_its_world() const { return slam_restarts_ > 0 && slam_worlds_lost_ == 0; }
 
  private:
   using Milliseconds = std::chrono::milliseconds;
@@ -48,6 +50,7 @@ class RunSession {
   void sample_memory(Milliseconds now);
   void watch_locks();
   void note(const std::string& text);
+  ServicePlan counted(ServicePlan plan);
 
   const RunSetup& setup_;
   service::InterruptSignals& signals_;
@@ -61,6 +64,7 @@ class RunSession {
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
+  int slam_restarts_ = 0, slam_worlds_lost_ = 0;
   std::uint64_t lost_locks_ = 0;
 };
 

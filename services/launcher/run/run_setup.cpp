@@ -246,7 +246,10 @@ void check_trace_file(const std::string& path) {
 
 void ServiceSettings::bind(service::ConfigBinder& binder) {
   using Part = service::ConfigBinder;
-  binder.part_of_section("filter", [this](Part& filter) { service::bind_filter_mode(filter, filter_mode); });
+  binder.part_of_section("filter", [this](Part& filter) {
+    service::bind_filter_mode(filter, filter_mode);
+    service::bind_person_masks(filter, person_masks);
+  });
   binder.part_of_section("detector", [this](Part& detector) {
     service::bind_model(detector, model);
     masks.bind(detector);
@@ -259,6 +262,13 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
     motion.bind(slam);
   });
   binder.part_of_section("dense", [this](Part& dense) { dense.field("grid.up", up, "what points up"); });
+}
+
+bool RunSetup::reports_masks() const {
+  if (bus_options.security.enabled()) return false;  // the keys of a launcher do not admit it to them
+  const bool replayed = std::ranges::count(replay.topics, std::string(bus::topics::kPersonMasks.name)) > 0;
+  const bool read_by_others = viewer || !record.empty() || services.person_masks == "on";
+  return replayed || (!mask_model_path.empty() && (show_masks || read_by_others || services.masks.use == "on"));
 }
 
 RunSetup prepare_run(const RunOptions& options) {

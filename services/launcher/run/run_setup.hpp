@@ -61,6 +61,7 @@ struct ServiceSettings {
   std::string model;   ///< ONNX file; empty: search
   std::string engine;  ///< of the detector
   service::MaskSettings masks;
+  std::string person_masks = "off";  ///< whether the filter reads them
   service::MapFileConfig map;
   bool localize_only = false;
   service::BaseConfig base;
@@ -84,6 +85,7 @@ struct RunOptions {
   std::string trace;                       ///< write what each service did when into this file; empty = no
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
   std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
+  bool show_masks = false;  ///< have people's masks computed for the report, also where nothing else reads them
   bool quiet = false;
   std::uint64_t frames = 0;  ///< end after so many frames; 0 = all
 };
@@ -131,6 +133,9 @@ struct RunSetup : RunOptions {
   /// Where the services write their parts of --trace.
   std::string trace_folder() const { return out_dir + "/trace"; }
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
+  /// Whether the report shows masks of people: those that others read too, or that are asked for. Reading them makes the
+  /// detector compute them.
+  bool reports_masks() const;
 };
 
 /// The pace without --pace. A camera, a scene without an end, and a detector that serves at its own pace do not wait.

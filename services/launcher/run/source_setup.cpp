@@ -16,25 +16,12 @@
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/ros2/names.hpp"
 #include "common/run_record/run_record.hpp"
-#include "services/camera/realsense/realsense_device.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
 namespace rtd::launcher {
 using service::ConfigError;
 namespace {
-
-constexpr int kLooksForAnnouncement = 3;  // of a second each, until a camera on DDS announces itself
-
-std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options) {
-  std::string why;
-  for (int look = 0; look < kLooksForAnnouncement; ++look) {
-    why = why_no_camera("realsense-dds", serial, camera::find_realsense_cameras(options));
-    if (why.empty()) return {};
-  }
-  why += fmt::format("\n  no such camera announces itself on realsense/device-info in DDS domain {}", options.domain);
-  return options.network.loopback_only ? why + "; on this host only: --profile lan adds the network" : why;
-}
 
 /// No one plugs a camera in because a run waits for it.
 void require_camera(const RunSetup& setup) {

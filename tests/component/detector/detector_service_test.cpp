@@ -11,6 +11,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "common/bus/backend.hpp"
+#include "common/bus/vendors.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
@@ -29,6 +31,71 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
+
+/// Another bus, which notes on which topics messages are written, in their order.
+class NotingBackend final : public bus::BusBackend {
+ public:
+  explicit NotingBackend(std::shared_ptr<bus::BusBackend> backend)
+      : BusBackend(backend->vendor()), backend_(std::move(backend)) {}
+
+  /// DDS names, one for each message on one of `topics`.
+  std::vector<std::string> written(const std::vector<std::string>& topics) const {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string> chosen;
+    for (const std::string& topic : written_)
+      if (std::ranges::count(topics, topic) > 0) chosen.push_back(topic);
+    return chosen;
+  }
+
+  std::unique_ptr<bus::WriterBackend> create_writer(bus::MessageId id, const std::string& topic,
+                                                    bus::QosProfile profile, bus::StatusCallbacks callbacks) override {
+    return std::make_unique<NotingWriter>(*this, topic,
+                                          backend_->create_writer(id, topic, profile, std::move(callbacks)));
+  }
+  std::unique_ptr<bus::ReaderBackend> create_reader(bus::MessageId id, const std::string& topic,
+                                                    bus::QosProfile profile, bus::ErasedCallback on_message,
+                                                    bus::StatusCallbacks callbacks) override {
+    return backend_->create_reader(id, topic, profile, std::move(on_message), std::move(callbacks));
+  }
+  std::unique_ptr<bus::CallEndpoint> create_calls(const bus::CallTopics& topics, bus::CallRole role,
+                                                  bus::OnCall on_call) override {
+    return backend_->create_calls(topics, role, std::move(on_call));
+  }
+
+ private:
+  class NotingWriter final : public bus::WriterBackend {
+   public:
+    NotingWriter(NotingBackend& bus, std::string topic, std::unique_ptr<bus::WriterBackend> writer)
+        : bus_(bus), topic_(std::move(topic)), writer_(std::move(writer)) {}
+    bool write(const void* message) override {
+      bus_.note(topic_);
+      return writer_->write(message);
+    }
+    void* loan() override { return writer_->loan(); }
+    bool write_loaned(void* slot) override {
+      bus_.note(topic_);
+      return writer_->write_loaned(slot);
+    }
+    void discard_loan(void* slot) override { writer_->discard_loan(slot); }
+    int matched() const override { return writer_->matched(); }
+    bool wait_acknowledged(int timeout_ms) override { return writer_->wait_acknowledged(timeout_ms); }
+    bus::WriterId id() const override { return writer_->id(); }
+
+   private:
+    NotingBackend& bus_;
+    const std::string topic_;
+    const std::unique_ptr<bus::WriterBackend> writer_;
+  };
+
+  void note(const std::string& topic) {
+    const std::lock_guard lock(mutex_);
+    written_.push_back(topic);
+  }
+
+  const std::shared_ptr<bus::BusBackend> backend_;
+  mutable std::mutex mutex_;
+  std::vector<std::string> written_;
+};
 
 /// A camera and a filter around one detector service.
 class DetectorServiceTest : public test_support::ServiceFixture<DetectorService> {
@@ -147,6 +214,31 @@ TEST_F(DetectorServiceTest, sends_masks_with_the_boxes_of_each_image) {
   EXPECT_THAT(sent[1]->data, ::testing::Each(0));
   EXPECT_TRUE(wait_metric(service::metric::kMasks, 1));
   EXPECT_GT(metric(*states_.all().back(), service::metric::kMasksMs).value_or(0), 0.0);
+}
+
+TEST_F(DetectorServiceTest, writes_the_masks_of_an_image_before_its_boxes) {
+  constexpr std::size_t kImages = 10;
+  with_masks();
+  Inbox<msg::Image> masks;
+  receive(bus::topics::kPersonMasks, masks);
+  const auto noting = std::make_shared<NotingBackend>(bus::inprocess::create_backend(bus_options_));
+  bus::Bus bus(noting);
+  auto running = std::async(std::launch::async, [&] {
+    service::Heartbeat heartbeat(bus, DetectorService::kName, stop_);
+    service::Runtime runtime{bus, heartbeat, stop_, service::Pace::kAsap, bus_options_};
+    return DetectorService(config_, runtime).run();
+  });
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady));
+  for (std::size_t i = 0; i < kImages; ++i) {
+    send_frame(static_cast<std::int64_t>(i), true);
+    EXPECT_TRUE(answer_box_.wait_count(i + 1));
+  }
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+  std::vector<std::string> wanted;
+  for (std::size_t i = 0; i < kImages; ++i)
+    wanted.insert(wanted.end(), {bus::topics::kPersonMasks.name, bus::topics::kDetections.name});
+  EXPECT_EQ(noting->written({bus::topics::kPersonMasks.name, bus::topics::kDetections.name}), wanted);
 }
 
 TEST_F(DetectorServiceTest, masks_of_the_same_images_are_the_same_whoever_computes_them) {

@@ -75,6 +75,27 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
   EXPECT_NEAR(picture.at<cv::Vec3b>(20, 20)[0], 5, 3);
 }
 
+TEST_F(CollectorTest, keeps_the_masks_of_people_in_its_pictures_when_it_is_to) {
+  FrameList store;
+  Collector collector(*bus_, store, {.samples = 6, .total = kFrames, .masks = true});
+  auto masks = bus_->writer(bus::topics::kPersonMasks);
+  publish(0);
+  for (int i = 0; i < 500 && !collector.any_frame(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  run_record::RunRecord record;
+  for (int i = 0; i < 500 && (record.samples.empty() || record.samples[0].masks.empty()); ++i) {
+    msg::Image people;  // of the frame's stamp, 0
+    people.encoding = "mono8";
+    people.width = people.step = 16;
+    people.height = 12;
+    people.data.assign(16 * 12, 1);
+    masks.write(people);
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    collector.fill(record);
+  }
+  ASSERT_EQ(record.samples.size(), 1U);
+  EXPECT_EQ(record.samples[0].masks.columns, 16);
+}
+
 TEST_F(CollectorTest, continues_after_it_has_subscribed_again) {
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     if (seq == kFrames / 2) collector_.subscribe_again();

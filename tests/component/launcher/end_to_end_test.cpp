@@ -184,6 +184,10 @@ TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkp
   EXPECT_THAT(log, AllOf(HasSubstr("event=map_loaded"), HasSubstr("event=relocalized"), HasSubstr("occasion=end")));
   if (test_support::kSanitized) GTEST_SKIP() << test_support::kTooSlow;
   EXPECT_GT(report()["frames_tracked"], 60) << "before and after";
+  const std::string trajectory = text_of(out_ + "/trajectory.txt");
+  EXPECT_TRUE(trajectory.starts_with(text_of(out_ + "/trajectory_online.txt").substr(0, 40)))
+      << "with the poses before";
+  EXPECT_THAT(report()["events"].dump(), HasSubstr("slam was restarted with its map"));
 }
 
 TEST_F(EndToEndTest, a_second_run_finds_its_place_in_the_map_of_the_first) {

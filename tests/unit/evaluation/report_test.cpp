@@ -268,6 +268,13 @@ TEST_F(Report, text_from_outside_is_escaped) {
   EXPECT_THAT(page(), AllOf(HasSubstr("tum:&lt;b&gt;&amp;&quot;x&quot;"), Not(HasSubstr("<img"))));
 }
 
+TEST_F(Report, sample_pictures_show_the_pixels_of_people) {
+  EXPECT_THAT(page(), Not(HasSubstr("fill=\"#ffb000\"")));
+  record_.samples[0].masks = {16, 12, std::vector<std::uint8_t>(16 * 12, 0)};
+  for (const std::size_t column : {3U, 4U, 5U}) record_.samples[0].masks.labels[16 * 2 + column] = 1;
+  EXPECT_THAT(page(), testing::ContainsRegex("<rect x=\"12\" y=\"8\" width=\"12\" height=\"4\"[^>]*fill=\"#ffb000\""));
+}
+
 TEST_F(Report, broken_sample_pictures_are_left_out) {
   record_.samples[0].jpeg = {1, 2, 3};
   const std::string html = page();

@@ -74,7 +74,8 @@ class RunJson : public testing::Test {
   RunJson() : run_(fabricated_run()) {
     run_.version = "1.2.3";
     run_.clocks = {{"detector", -3.25, 0.5}};
-    run_.samples = {fabricated_sample(3)};
+    run_.samples = {fabricated_sample(3), fabricated_sample(4)};
+    run_.samples[1].masks = {16, 12, std::vector<std::uint8_t>(16 * 12, 1)};
     run_.frames_left_out = 7;
     run_.left_out = {{"stamp_backwards", 5}, {"stamp_doubled", 2}};
     run_.judged_frames = {{run_.frames[0].tracking.stamp_ns, {{1.5F, 2.25F, true}, {-0.1F, 479.0F, false}}}};
@@ -116,6 +117,16 @@ TEST_F(RunJson, keeps_the_features_and_whether_the_run_was_interrupted) {
   EXPECT_EQ(read.judged_frames[0].features[1].u_raw_px, -0.1F);
   EXPECT_TRUE(read.judged_frames[0].features[0].removed);
   EXPECT_FALSE(read.judged_frames[0].features[1].removed);
+}
+
+TEST_F(RunJson, keeps_masks_of_people_and_refuses_those_of_another_size) {
+  const run_record::RunRecord read = written_and_read();
+  EXPECT_TRUE(read.samples.at(0).masks.empty());
+  EXPECT_EQ(read.samples.at(1).masks.rows, 12);
+  EXPECT_EQ(read.samples.at(1).masks.labels, run_.samples[1].masks.labels);
+  nlohmann::json json = nlohmann::json::parse(read_text(folder_.file("run.json")));
+  json["samples"][1]["masks"]["rows"] = 13;
+  EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("masks of another size"));
 }
 
 TEST_F(RunJson, takes_what_is_not_finite_for_unknown) {

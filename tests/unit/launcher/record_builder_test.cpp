@@ -300,6 +300,17 @@ TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
   for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LT(samples[i].seq - samples[i - 1].seq, 1100U);
 }
 
+TEST(sample_keeper, finds_the_frame_of_masks_by_its_stamp) {
+  SampleKeeper keeper(12, 24);
+  keeper.expect_masks(4, 400);
+  keeper.add_masks(500, {1, 1, {2}});  // of a frame that is not kept
+  keeper.add_masks(400, {1, 1, {1}});
+  keeper.add_image(4, {1});
+  keeper.add_features(4, *features_of(4));
+  ASSERT_EQ(keeper.samples().size(), 1U);
+  EXPECT_THAT(keeper.samples()[0].masks.labels, ElementsAre(1));
+}
+
 TEST(sample_keeper, needs_picture_and_features) {
   SampleKeeper keeper(12, 24);
   keeper.add_image(0, {1});

@@ -132,6 +132,8 @@ TEST(online_trajectory, has_a_line_per_tracked_frame) {
   lost.tracking.state = msg::TrackingState::kLost;
   EXPECT_EQ(online_trajectory_text({tracked, lost}),
             "1305031102.175304 1.000000000 -2.000000000 0.500000000 0.000000000 0.000000000 0.000000000 1.000000000\n");
+  EXPECT_EQ(online_trajectory_text({tracked}, tracked.tracking.stamp_ns), "") << "of the frames before";
+  EXPECT_NE(online_trajectory_text({tracked}, tracked.tracking.stamp_ns + 1), "");
 }
 
 }  // namespace

@@ -153,7 +153,8 @@ std::string samples_section(const std::vector<Entry>& entries) {
   if (best == entries.end()) return "";
   const std::vector<html::Figure> figures = sample_figures(*best->run, kShownSamples);
   if (figures.empty()) return "";
-  return html::section("Sample frames: " + best->label, "Green: kept as static. Red: removed as dynamic.",
+  return html::section("Sample frames: " + best->label,
+                       "Green: kept as static. Red: removed as dynamic. Amber: pixels of people.",
                        html::gallery(figures));
 }
 

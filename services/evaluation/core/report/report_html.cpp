@@ -224,8 +224,11 @@ std::string stage_section(const RunSummary& summary) {
 std::string samples_section(const Run& run) {
   const std::vector<html::Figure> figures = sample_figures(run, kSliderSamples);
   if (figures.empty()) return "";
-  return html::section("Sample frames", "Green: kept as static. Red: removed as dynamic. Scroll to see the others.",
-                       html::slider(figures));
+  return html::section(
+      "Sample frames",
+      "Green: kept as static. Red: removed as dynamic. Amber: pixels of people, where masks were sent. "
+      "Scroll to see the others.",
+      html::slider(figures));
 }
 
 std::string processes_section(const Run& run) {

@@ -138,6 +138,18 @@ void draw_stage_row(plot::Svg& svg, const StageSummary& stage, double y, double 
   svg.text({kChartWidth - 10, y + 4}, fmt::format("{} frames", stage.ms.count), {palette::kMuted, 12, Anchor::kEnd});
 }
 
+/// People as bars of equal labels in each row of their grid.
+void draw_masks(plot::Svg& svg, const vision::PersonMasks& masks) {
+  constexpr double kStep = vision::kMaskStepPx;
+  for (int row = 0; row < masks.rows; ++row) {
+    for (int begin = 0, end = 0; begin < masks.columns; begin = end) {
+      const std::uint8_t label = masks.at(begin, row);
+      for (end = begin + 1; end < masks.columns && masks.at(end, row) == label;) ++end;
+      if (label != 0) svg.rect({begin * kStep, row * kStep, (end - begin) * kStep, kStep}, "#ffb000", 0.45);
+    }
+  }
+}
+
 std::string caption(const run_record::SampleFrame& sample) {
   const auto removed =
       std::ranges::count_if(sample.features, [](const run_record::JudgedFeature& feature) { return feature.removed; });
@@ -230,6 +242,7 @@ std::string sample_picture(const run_record::SampleFrame& sample) {
   if (width <= 0 || height <= 0) return "";
   plot::Svg svg(width, height, fmt::format("Frame {} with its features", sample.seq));
   svg.jpeg({0, 0, static_cast<double>(width), static_cast<double>(height)}, sample.jpeg);
+  draw_masks(svg, sample.masks);
   std::vector<Point> kept, removed;
   for (const run_record::JudgedFeature& feature : sample.features)
     (feature.removed ? removed : kept).push_back({feature.u_raw_px, feature.v_raw_px});

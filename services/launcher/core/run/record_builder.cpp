@@ -322,6 +322,20 @@ void SampleKeeper::add_features(std::uint64_t seq, const msg::FeatureFrame& feat
   thin_out();
 }
 
+void SampleKeeper::expect_masks(std::uint64_t seq, std::int64_t stamp_ns) {
+  awaited_[stamp_ns] = seq;
+  if (awaited_.size() > wanted_) awaited_.erase(awaited_.begin());  // no detector answers every frame
+}
+
+void SampleKeeper::add_masks(std::int64_t stamp_ns, vision::PersonMasks masks) {
+  const auto awaited = awaited_.extract(stamp_ns);
+  if (awaited.empty() || !wants(awaited.mapped())) return;
+  run_record::SampleFrame& sample = kept_[awaited.mapped()];
+  sample.seq = awaited.mapped();
+  sample.masks = std::move(masks);
+  thin_out();
+}
+
 void SampleKeeper::thin_out() {
   while (kept_.size() >= 2 * wanted_) {
     stride_ *= 2;
@@ -355,9 +369,13 @@ std::string format_live_status(const LiveStatus& status) {
 }
 
 std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames) {
+  return online_trajectory_text(frames, INT64_MAX);
+}
+
+std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns) {
   std::string text;
   for (const run_record::FrameRecord& frame : frames) {
-    if (!msg::is_measured_in_map(frame.tracking)) continue;
+    if (!msg::is_measured_in_map(frame.tracking) || frame.tracking.stamp_ns >= end_ns) continue;
     const auto& [t, q] = frame.tracking.T_world_camera;
     fmt::format_to(std::back_inserter(text), "{:.6f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f} {:.9f}\n",
                    static_cast<double>(frame.tracking.stamp_ns) * 1e-9, t[0], t[1], t[2], q[0], q[1], q[2], q[3]);

@@ -157,6 +157,9 @@ class SampleKeeper {
   bool wants(std::uint64_t seq) const { return seq % stride_ == 0; }
   void add_image(std::uint64_t seq, std::vector<std::uint8_t> jpeg);
   void add_features(std::uint64_t seq, const msg::FeatureFrame& features);
+  /// Masks name their frame by its stamp: that of a frame to keep, before its masks.
+  void expect_masks(std::uint64_t seq, std::int64_t stamp_ns);
+  void add_masks(std::int64_t stamp_ns, vision::PersonMasks masks);
 
   /// The kept frames that have both image and features, by seq, at most `wanted`.
   std::vector<run_record::SampleFrame> samples() const;
@@ -166,9 +169,12 @@ class SampleKeeper {
 
   std::uint64_t wanted_, stride_;
   std::map<std::uint64_t, run_record::SampleFrame> kept_;
+  std::map<std::int64_t, std::uint64_t> awaited_;  ///< frames whose masks have not come, by stamp
 };
 
 /// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
 std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames);
+/// The same of the frames before `end_ns`: what a slam published that was restarted.
+std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns);
 
 }  // namespace rtd::launcher
