@@ -159,11 +159,12 @@ int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& 
     const auto source = camera::make_source(uri);
     const std::uint64_t frames = write(*source, options, err);
     print(options, frames, *source, out, err);
-    for (const RecordedTopic& topic : camera::topics_beside_frames(uri)) {
-      err << "rtd convert: left out: " << topic.name << " (" << topic.type << ", " << topic.messages
-          << " messages): only frames and ground truth are written here; 'rtd convert " << options.source
+    const std::vector<RecordedTopic> others = camera::topics_beside_frames(uri);
+    for (const RecordedTopic& topic : others)
+      err << "rtd convert: left out: " << topic.name << " (" << topic.type << ", " << topic.messages << " messages)\n";
+    if (!others.empty())
+      err << "rtd convert: only frames, and true poses that tf has, are written here; 'rtd convert " << options.source
           << " NEW.mcap' carries all topics\n";
-    }
     return lost(source->counters()) > 0 ? service::kPartialLoss : service::kOk;
   });
 }
