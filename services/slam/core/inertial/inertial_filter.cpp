@@ -72,6 +72,7 @@ void InertialFilter::predict(const inertial::Preintegration& motion) {
 
   for (PredictedFrame& frame : predicted_)
     frame.covariance_with_state = (frame.covariance_with_state * F.transpose()).eval();
+  by_learnt_ = (F * by_learnt_).eval();
 
   const Eigen::Vector3d p =
       state_.T_world_imu.translation() + state_.velocity_m_s * dt_s + 0.5 * dt_s * dt_s * g + moved;
@@ -93,6 +94,7 @@ void InertialFilter::predict_blind(double gap_s) {
   predicted_.clear();
   measured_ = 0;
   ready_ = false;
+  trust();
 }
 
 /// d(position, rotation of the camera) by the error state, Eq. (8).
@@ -113,6 +115,33 @@ PredictedPose InertialFilter::camera() const {
   return {state_.T_world_imu * T_imu_camera_, H * P_ * H.transpose()};
 }
 
+/// What must be known of them before anything is predicted, and of the accelerometer's bias at first.
+Eigen::Matrix<double, 9, 1> InertialFilter::learnt_variances() const {
+  Eigen::Matrix<double, 9, 1> sigmas;
+  sigmas << Eigen::Vector3d::Constant(config_.ready_m_s), Eigen::Vector3d::Constant(config_.ready_rad_s),
+      Eigen::Vector3d::Constant(config_.accel_bias_m_s2);
+  return sigmas.cwiseAbs2();
+}
+
+PredictedPose InertialFilter::doubted_camera() const {
+  PredictedPose pose = camera();
+  const Eigen::Matrix<double, 6, 9> J = camera_jacobian() * by_learnt_;
+  pose.covariance += J * learnt_variances().asDiagonal() * J.transpose();
+  return pose;
+}
+
+void InertialFilter::doubt() {
+  const Eigen::Matrix<double, 9, 18> error = learnt_variances().asDiagonal() * by_learnt_.transpose();
+  P_ += by_learnt_ * error;
+  for (PredictedFrame& frame : predicted_) frame.covariance_with_state += frame.by_learnt * error;
+}
+
+void InertialFilter::trust() {
+  by_learnt_.setZero();
+  by_learnt_.middleRows<9>(kVelocity).setIdentity();
+  for (PredictedFrame& frame : predicted_) frame.by_learnt.setZero();
+}
+
 /// The Kalman update in Joseph's form, and the error put into the state. Eq. (9).
 void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& residual, const Eigen::MatrixXd& R) {
   const Eigen::MatrixXd S = H * P_ * H.transpose() + R;
@@ -126,6 +155,7 @@ void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& re
                                                         frame.T_world_camera.translation() + error.head<3>()));
     frame.covariance_with_state = (frame.covariance_with_state * keep.transpose()).eval();
   }
+  by_learnt_ = (keep * by_learnt_).eval();
   P_ = (keep * P_ * keep.transpose() + K * R * K.transpose()).eval();
   P_ = (0.5 * (P_ + P_.transpose())).eval();
   const Eigen::Matrix<double, 18, 1> error = K * residual;
@@ -139,7 +169,8 @@ void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& re
 
 void InertialFilter::remember(std::uint64_t seq) {
   const Eigen::Isometry3d T_world_camera = state_.T_world_imu * T_imu_camera_;
-  predicted_.push_back({seq, T_world_camera, T_world_camera, camera_jacobian() * P_});
+  const Eigen::Matrix<double, 6, 18> H = camera_jacobian();
+  predicted_.push_back({seq, T_world_camera, T_world_camera, H * P_, H * by_learnt_});
   measured_since_predicted_ = 0;
 }
 
@@ -190,11 +221,13 @@ void InertialFilter::move(const Eigen::Isometry3d& T_new_old) {
   Matrix18d A = Matrix18d::Identity();
   for (const int place : {kRotation, kPosition, kVelocity, kGravity}) A.block<3, 3>(place, place) = R;
   P_ = (A * P_ * A.transpose()).eval();
+  by_learnt_ = (A * by_learnt_).eval();
   for (PredictedFrame& frame : predicted_) {
     frame.T_world_claimed = geometry::normalized(T_new_old * frame.T_world_claimed);
     frame.T_world_camera = geometry::normalized(T_new_old * frame.T_world_camera);
     frame.covariance_with_state =
         (A.topLeftCorner<6, 6>() * frame.covariance_with_state * A.transpose()).eval();  // both rotations are R
+    frame.by_learnt = (A.topLeftCorner<6, 6>() * frame.by_learnt).eval();
   }
 }
 
@@ -213,6 +246,7 @@ void InertialFilter::relocate(const PredictedPose& measured) {
   P_.topLeftCorner<6, 6>() = J * measured.covariance * J.transpose();
   // What turned the pose turned gravity and velocity by guess.
   P_.block<3, 3>(kGravity, kGravity) += measured.covariance.bottomRightCorner<3, 3>();
+  trust();
 }
 
 }  // namespace rtd::slam

@@ -105,6 +105,17 @@ std::optional<PredictedPose> MotionPrior::expected() const {
   return by_wheels();
 }
 
+std::optional<PredictedPose> MotionPrior::doubted() const {
+  return !elsewhere_ && filter_ && filter_->ready() ? filter_->doubted_camera() : expected();
+}
+
+void MotionPrior::believe(const PredictedPose& measured) {
+  const bool ready = !elsewhere_ && filter_ && filter_->ready();
+  if (ready && pose_distance2(filter_->camera(), measured) > std::pow(config_.prior.contradiction, 2)) filter_->doubt();
+  correct(measured);
+  if (filter_) filter_->trust();
+}
+
 std::optional<PredictedPose> MotionPrior::correct(const PredictedPose& measured) {
   if (elsewhere_) {
     relocate(measured);

@@ -27,6 +27,11 @@ class MotionPrior {
   std::optional<inertial::CameraTurn> turn_since(std::int64_t from_ns) const;
   /// Its pose by the map, covariance relative to the map. The expected pose with it.
   std::optional<PredictedPose> correct(const PredictedPose& measured);
+  /// Its expected pose, with what may be wrong of it if what was learnt before the last believe() is: that doubt grows
+  /// with the time since. Only an IMU learns.
+  std::optional<PredictedPose> doubted() const;
+  /// Its pose by the map is beyond doubt: if it contradicts the expected one, that was wrong.
+  void believe(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
   /// The velocity was wrong: it is learnt again from here on.

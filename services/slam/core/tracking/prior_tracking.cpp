@@ -76,8 +76,9 @@ bool Tracker::turns_as_measured(const Frame& frame, const PoseGuess& guess) cons
 bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const {
   if (!follows_prior(frame) || turns_as_measured(frame, tracking.guess)) return false;
   const PredictedPose measured{tracking.guess.T_world_camera, config_.sensor.shared_error * tracking.guess.covariance};
-  const double distance2 = pose_distance2(*expected_, measured);
-  const double most2 = covered(frame) ? kMaxPoseDistance2 : config_.prior.contradiction * config_.prior.contradiction;
+  const bool is_covered = covered(frame);
+  const double distance2 = pose_distance2(is_covered ? *expected_ : *prior_->doubted(), measured);
+  const double most2 = is_covered ? kMaxPoseDistance2 : config_.prior.contradiction * config_.prior.contradiction;
   return distance2 > most2 && !agrees_widely(frame, tracking, config_.prior.weak_support);
 }
 
@@ -91,7 +92,7 @@ void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pos
   } else if (found_again) {
     prior_->relocate(measured);
   } else {
-    prior_->correct(measured);
+    prior_->believe(measured);
   }
 }
 
