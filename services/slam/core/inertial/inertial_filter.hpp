@@ -59,11 +59,11 @@ class InertialFilter {
   std::vector<PoseCorrection> take_corrections();
   /// Pose of the camera with its covariance.
   PredictedPose camera() const;
-  /// The same if velocity and biases at the last trust() were known no better than a prediction needs: Eq. (16).
+  /// The same if velocity and biases were known no better at the last trust() than predictions need to begin. Eq. (16).
   PredictedPose doubted_camera() const;
-  /// That is so: the next poses correct them.
+  /// They were not: the next poses correct them.
   void doubt();
-  /// The pose is known by what is seen: what was learnt up to here is doubted from here on only.
+  /// The pose is known by what is seen: an error of velocity and biases shows from here on only.
   void trust();
   /// Whether velocity and gyro bias have been known well enough since the last pause to say where the next frames are.
   bool ready() const { return ready_; }
@@ -73,7 +73,7 @@ class InertialFilter {
     std::uint64_t seq;
     Eigen::Isometry3d T_world_claimed, T_world_camera;   ///< as taken last, and as known now
     Eigen::Matrix<double, 6, 18> covariance_with_state;  ///< of (position, rotation) of the camera then
-    Eigen::Matrix<double, 6, 9> by_learnt;               ///< its error by what by_learnt_ is by
+    Eigen::Matrix<double, 6, 9> by_learnt;               ///< the error of that pose, as by_learnt_
   };
   Eigen::Matrix<double, 6, 18> camera_jacobian() const;
   Eigen::Matrix<double, 9, 1> learnt_variances() const;
@@ -83,7 +83,7 @@ class InertialFilter {
   Eigen::Isometry3d T_imu_camera_;
   InertialState state_;
   Matrix18d P_ = Matrix18d::Zero();
-  Matrix189d by_learnt_;  ///< the error by those of velocity and biases at the last trust()
+  Matrix189d by_learnt_ = Matrix189d::Zero();  ///< the error by those of velocity and biases at the last trust()
   std::vector<PredictedFrame> predicted_;
   int measured_since_predicted_ = 0;
   int measured_ = 0;  ///< poses since velocity was unknown

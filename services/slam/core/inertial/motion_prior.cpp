@@ -109,9 +109,11 @@ std::optional<PredictedPose> MotionPrior::doubted() const {
   return !elsewhere_ && filter_ && filter_->ready() ? filter_->doubted_camera() : expected();
 }
 
+void MotionPrior::doubt() {
+  if (!elsewhere_ && filter_ && filter_->ready()) filter_->doubt();
+}
+
 void MotionPrior::believe(const PredictedPose& measured) {
-  const bool ready = !elsewhere_ && filter_ && filter_->ready();
-  if (ready && pose_distance2(filter_->camera(), measured) > std::pow(config_.prior.contradiction, 2)) filter_->doubt();
   correct(measured);
   if (filter_) filter_->trust();
 }
@@ -132,11 +134,6 @@ void MotionPrior::relocate(const PredictedPose& measured) {
   last_ = measured;
   last_ns_ = now_ns_;
   filter_ ? filter_->relocate(measured) : begin_filter(measured);
-}
-
-void MotionPrior::begin_again(const PredictedPose& measured) {
-  if (filter_) filter_->predict_blind(0);
-  relocate(measured);
 }
 
 void MotionPrior::remember(std::uint64_t seq) {

@@ -27,15 +27,15 @@ class MotionPrior {
   std::optional<inertial::CameraTurn> turn_since(std::int64_t from_ns) const;
   /// Its pose by the map, covariance relative to the map. The expected pose with it.
   std::optional<PredictedPose> correct(const PredictedPose& measured);
-  /// Its expected pose, with what may be wrong of it if what was learnt before the last believe() is: that doubt grows
-  /// with the time since. Only an IMU learns.
+  /// Its expected pose if what was learnt before the last believe() may be wrong: that doubt grows with the time since.
+  /// Only an IMU learns.
   std::optional<PredictedPose> doubted() const;
-  /// Its pose by the map is beyond doubt: if it contradicts the expected one, that was wrong.
+  /// A pose that is believed contradicts the expected one: what was learnt was wrong.
+  void doubt();
+  /// As correct(), by a pose that needs no support by the prior.
   void believe(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
-  /// The velocity was wrong: it is learnt again from here on.
-  void begin_again(const PredictedPose& measured);
   /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.
   void remember(std::uint64_t seq);
   std::vector<PoseCorrection> take_corrections();

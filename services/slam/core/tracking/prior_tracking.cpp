@@ -11,7 +11,7 @@ namespace rtd::slam {
 void Tracker::expect(const Frame& frame) {
   constexpr double kForgotten = 0.003;  // of the usual number in each frame: ten seconds
   usual_features_ = std::max((1 - kForgotten) * usual_features_, static_cast<double>(frame.features.size()));
-  weighed_ = turned_ = false;
+  weighed_ = false;
   if (prior_ == nullptr) return;
   expected_ = prior_->advance(frame.stamp_ns);
   rotation_ = config_.prior.known_rotation ? rotation_since_last(frame.stamp_ns) : std::nullopt;
@@ -78,7 +78,7 @@ bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& trac
   const PredictedPose measured{tracking.guess.T_world_camera, config_.sensor.shared_error * tracking.guess.covariance};
   const bool is_covered = covered(frame);
   const double distance2 = pose_distance2(is_covered ? *expected_ : *prior_->doubted(), measured);
-  const double most2 = is_covered ? kMaxPoseDistance2 : config_.prior.contradiction * config_.prior.contradiction;
+  const double most2 = is_covered ? kMaxPoseDistance2 : contradiction2();
   return distance2 > most2 && !agrees_widely(frame, tracking, config_.prior.weak_support);
 }
 
@@ -86,14 +86,12 @@ bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& trac
 void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pose) {
   const PredictedPose measured{last_.T_world_camera, config_.prior.visual_factor * covariance};
   const bool found_again = !had_pose && (!expected_ || pose_distance2(*expected_, measured) > kMaxPoseDistance2);
-  const double contradiction2 = config_.prior.contradiction * config_.prior.contradiction;
-  if (had_pose && turned_ && pose_distance2(*expected_, measured) > contradiction2) {
-    prior_->begin_again(measured);
-  } else if (found_again) {
+  if (found_again) {
     prior_->relocate(measured);
-  } else {
-    prior_->believe(measured);
+    return;
   }
+  if (expected_ && pose_distance2(*expected_, {last_.T_world_camera, covariance}) > contradiction2()) prior_->doubt();
+  prior_->believe(measured);
 }
 
 /// The pose is where IMU or wheels expect it. A pose from few landmarks that agrees with them corrects them.

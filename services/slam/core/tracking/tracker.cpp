@@ -111,7 +111,6 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
     if (!acceptable(tracking.guess) || !believable(*frame, guess, tracking)) continue;
     outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
     outcome.inliers = tracking.guess.inliers;
-    turned_ = expected_ && turns_as_measured(*frame, tracking.guess);
     if (covered(*frame)) weigh_against_prior(tracking.guess);
     accept(outcome, std::move(frame), tracking);
     return outcome;

@@ -115,6 +115,7 @@ class Tracker {
   bool hidden(const Frame& frame) const;
   bool covered(const Frame& frame) const { return follows_prior(frame) && hidden(frame); }
   void weigh_against_prior(PoseGuess& guess);
+  double contradiction2() const { return config_.prior.contradiction * config_.prior.contradiction; }
   bool turns_as_measured(const Frame& frame, const PoseGuess& guess) const;
   bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
   void report_to_prior(const geometry::Matrix6d& covariance, bool had_pose);
@@ -141,7 +142,6 @@ class Tracker {
   std::optional<PredictedPose> expected_;          ///< of the frame in work, by the prior
   std::optional<vision::RotationPrior> rotation_;  ///< of the frame in work, by the gyroscope from last_ on
   Eigen::Matrix3d rotation_covariance_ = Eigen::Matrix3d::Zero();  ///< of last_ against the map, in the world
-  bool turned_ = false;        ///< the pose of the frame in work has turned as the gyroscope says
   bool weighed_ = false;       ///< the pose of the frame in work is also by the prior
   double usual_features_ = 0;  ///< static ones of the last seconds
   Relocalizer relocalizer_;

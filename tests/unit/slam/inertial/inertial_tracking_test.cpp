@@ -34,8 +34,8 @@ class InertialTracking : public ::testing::Test {
   void feed_imu(std::uint64_t seq) {
     while (static_cast<double>(next_imu_) / 200 < static_cast<double>(seq) / 30 + 0.005) {
       const camera::ImuReading reading = imu_.reading(next_imu_++);
-      slam().add(
-          inertial::ImuSample{reading.stamp_ns + FeatureWorld::stamp_ns(0), reading.gyro_rad_s, reading.accel_m_s2});
+      slam().add(inertial::ImuSample{reading.stamp_ns + FeatureWorld::stamp_ns(0),
+                                     reading.gyro_rad_s + gyro_error_rad_s_, reading.accel_m_s2});
     }
   }
   FrameResult show(std::uint64_t seq, std::unique_ptr<msg::FeatureFrame> view) {
@@ -59,6 +59,7 @@ class InertialTracking : public ::testing::Test {
   SlamConfig config_;
   std::optional<SlamSystem> slam_;
   std::int64_t next_imu_ = 0;
+  Eigen::Vector3d gyro_error_rad_s_ = Eigen::Vector3d::Zero();  ///< more than its bias
 };
 
 TEST_F(InertialTracking, continues_for_three_seconds_without_a_view) {
@@ -138,6 +139,20 @@ TEST_F(InertialTracking, a_person_who_fills_the_view_does_not_take_the_pose_alon
   const double without_m = worst_m();
   EXPECT_LT(with_imu_m, 0.05);
   EXPECT_GT(without_m, 0.2);
+}
+
+TEST_F(InertialTracking, a_prediction_that_has_drifted_does_not_hold_against_the_view_that_comes_back) {
+  config_.prior.imu = true;
+  config_.prior.weak_support = 1;  // however many landmarks agree
+  std::uint64_t seq = 0;
+  for (; seq < 75; ++seq) show(seq);
+  gyro_error_rad_s_.x() = 0.03;  // as if the bias had been learnt beside something that moves
+  for (; seq < 120; ++seq) show(seq, covered(seq, 0, FeatureWorld::T_world_camera(seq)));
+  for (; seq < 150; ++seq) {
+    const FrameResult result = show(seq);
+    EXPECT_EQ(result.state, TrackingState::kOk) << "frame " << seq;
+    EXPECT_LT(error_m(result), 0.02) << "m, frame " << seq;
+  }
 }
 
 TEST_F(InertialTracking, an_imu_that_is_not_received_changes_nothing) {

@@ -53,7 +53,8 @@ class Drive {
     for (; static_cast<double>(imu_index_) / 200 < t_s + 0.005; ++imu_index_) {
       const camera::ImuReading reading = imu_.reading(imu_index_);
       if (!muted_)
-        prior_->add(inertial::ImuSample{reading.stamp_ns + kFirst_ns, reading.gyro_rad_s, reading.accel_m_s2});
+        prior_->add(inertial::ImuSample{reading.stamp_ns + kFirst_ns, reading.gyro_rad_s + more_bias_rad_s_,
+                                        reading.accel_m_s2});
     }
     while (wheels_.next_s() < t_s + 0.02) {
       const camera::WheelReading reading = wheels_.next();
@@ -61,7 +62,8 @@ class Drive {
     }
     return prior_->advance(ns(t_s) + kFirst_ns);
   }
-  void measure() {
+  void measure() { prior_->believe(measured()); }
+  PredictedPose measured() {
     std::normal_distribution<double> normal;
     const auto noise = [&] { return Eigen::Vector3d(normal(random_), normal(random_), normal(random_)); };
     PredictedPose pose;
@@ -70,7 +72,7 @@ class Drive {
     pose.T_world_camera.linear() = geometry::so3_exp(kPose_rad * noise()) * pose.T_world_camera.linear();
     pose.covariance.diagonal() << Eigen::Vector3d::Constant(kPose_m * kPose_m),
         Eigen::Vector3d::Constant(kPose_rad * kPose_rad);
-    prior_->correct(pose);
+    return pose;
   }
   void track(double duration_s) {
     for (int i = 0; i < static_cast<int>(duration_s * kFps); ++i) {
@@ -79,6 +81,7 @@ class Drive {
     }
   }
   void mute_imu(bool on) { muted_ = on; }
+  void add_gyro_bias(const Eigen::Vector3d& bias_rad_s) { more_bias_rad_s_ += bias_rad_s; }
 
  private:
   static constexpr std::int64_t kFirst_ns = 1'000'000'000'000;
@@ -92,6 +95,7 @@ class Drive {
   int frame_ = 0;
   std::int64_t imu_index_ = 0;
   bool muted_ = false;
+  Eigen::Vector3d more_bias_rad_s_ = Eigen::Vector3d::Zero();
 };
 
 geometry::Vector6d error_of(const PredictedPose& pose, const Eigen::Isometry3d& T_truth) {
@@ -124,6 +128,48 @@ TEST(InertialFilter, with_time_distinguishes_tilt_from_bias) {
   const InertialState& state = drive.prior().filter()->state();
   EXPECT_LT((state.bias.accel_m_s2 - drive.imu().accel_bias_m_s2()).norm(), 0.01) << "m/s2";
   EXPECT_LT(std::acos(-state.gravity_m_s2.normalized().dot(drive.up())), 0.002) << "rad";
+}
+
+double position_sigma_m(const std::optional<PredictedPose>& pose) {
+  return geometry::largest_sigma(pose->covariance.topLeftCorner<3, 3>());
+}
+
+TEST(InertialFilter, doubts_what_it_has_learnt_the_more_the_longer_no_pose_is_believed) {
+  Drive drive(CameraMotion::kHandHeld, 1, true, false);
+  drive.track(4);
+  const auto at_once = drive.prior().doubted();
+  EXPECT_NEAR(position_sigma_m(at_once), position_sigma_m(drive.prior().correct(drive.measured())), 1e-3) << "m";
+  const ImuConfig imu;
+  for (const double blind_s : {0.5, 1.0}) {
+    std::optional<PredictedPose> expected;
+    for (int i = 0; i < kFps / 2; ++i) expected = drive.expect();
+    const double doubted_m = position_sigma_m(drive.prior().doubted());
+    EXPECT_GT(doubted_m, imu.ready_m_s * blind_s) << "m: by the velocity alone";
+    EXPECT_LT(doubted_m, 1.5 * imu.ready_m_s * blind_s) << "m: the biases come in later";
+    EXPECT_LT(position_sigma_m(expected), 0.3 * doubted_m) << "m: what is claimed is by what was learnt";
+  }
+  drive.measure();
+  EXPECT_LT(position_sigma_m(drive.prior().doubted()), 0.002) << "m: the pose is known again";
+}
+
+/// The gyroscope's bias is another than was learnt, and one second later a right pose is believed against it: how far
+/// off half a second without a pose then ends, rad.
+double turned_off_rad(bool doubts) {
+  Drive drive(CameraMotion::kHandHeld, 2, true, false);
+  drive.track(3);
+  drive.add_gyro_bias({0, 0, 0.01});
+  for (int i = 0; i < kFps; ++i) drive.expect();
+  if (doubts) drive.prior().doubt();
+  drive.measure();
+  drive.track(0.3);
+  std::optional<PredictedPose> expected;
+  for (int i = 0; i < kFps / 2; ++i) expected = drive.expect();
+  return error_of(*expected, drive.truth(drive.now_s())).tail<3>().norm();
+}
+
+TEST(InertialFilter, unlearns_what_a_believed_pose_contradicts) {
+  EXPECT_GT(turned_off_rad(false), 0.006) << "rad";
+  EXPECT_LT(turned_off_rad(true), 0.003) << "rad";
 }
 
 /// Mean NEES and largest position error of `seconds` without a measured pose, after two seconds with.
