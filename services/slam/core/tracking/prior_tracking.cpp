@@ -90,8 +90,22 @@ void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pos
     prior_->relocate(measured);
     return;
   }
-  if (expected_ && pose_distance2(*expected_, {last_.T_world_camera, covariance}) > contradiction2()) prior_->doubt();
+  if (expected_ && pose_distance2(*expected_, {last_.T_world_camera, covariance}) > contradiction2()) {
+    prior_->doubt();
+    contradicted_ns_ = last_.frame->stamp_ns;
+    const geometry::Vector6d off = geometry::pose_difference(expected_->T_world_camera, last_.T_world_camera);
+    contradiction_ = off * off.transpose();
+  }
   prior_->believe(measured);
+}
+
+/// Whether an IMU contradicted a pose that was believed, within the span that docs/integrity.md judges: either of both
+/// may be wrong.
+bool Tracker::contradicted() const {
+  constexpr double kSpan_s = 1;
+  if (!config_.prior.imu || !contradicted_ns_) return false;
+  const double since_s = inertial::seconds_between(*contradicted_ns_, last_.frame->stamp_ns);
+  return since_s >= 0 && since_s <= kSpan_s;
 }
 
 /// The pose is where IMU or wheels expect it. A pose from few landmarks that agrees with them corrects them.

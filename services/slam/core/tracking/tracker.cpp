@@ -248,6 +248,11 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
     report_to_prior(by_image + consistency_.covariance(scene_m_), had_pose);
   }
   outcome.covariance = covariance_ + of_calibration(last_.T_world_camera);
+  outcome.contradicted = contradicted();
+  if (outcome.contradicted) {
+    outcome.state = msg::TrackingState::kDoubtful;
+    outcome.covariance += contradiction_;
+  }
 }
 
 /// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as

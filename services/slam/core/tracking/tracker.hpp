@@ -46,6 +46,7 @@ struct TrackOutcome {
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
+  bool contradicted = false;  ///< an IMU expected another pose less than a second ago
   /// Odometry continues beside the map, which is old and does not change. At the first frame after it: where odometry
   /// expects that frame.
   bool apart = false;
@@ -118,6 +119,7 @@ class Tracker {
   double contradiction2() const { return config_.prior.contradiction * config_.prior.contradiction; }
   bool turns_as_measured(const Frame& frame, const PoseGuess& guess) const;
   bool contradicts_prior(const Frame& frame, const LocalMapTracking& tracking) const;
+  bool contradicted() const;
   void report_to_prior(const geometry::Matrix6d& covariance, bool had_pose);
   /// Ways to a first guess of the pose, in the order in which they are tried.
   enum class Attempt { kLastFrame, kKeyframe, kAround, kRecovery };
@@ -142,6 +144,8 @@ class Tracker {
   std::optional<PredictedPose> expected_;          ///< of the frame in work, by the prior
   std::optional<vision::RotationPrior> rotation_;  ///< of the frame in work, by the gyroscope from last_ on
   Eigen::Matrix3d rotation_covariance_ = Eigen::Matrix3d::Zero();  ///< of last_ against the map, in the world
+  std::optional<std::int64_t> contradicted_ns_;  ///< stamp of the last believed pose that the prior contradicted
+  geometry::Matrix6d contradiction_ = geometry::Matrix6d::Zero();  ///< square of how far off it was expected
   bool weighed_ = false;       ///< the pose of the frame in work is also by the prior
   double usual_features_ = 0;  ///< static ones of the last seconds
   Relocalizer relocalizer_;

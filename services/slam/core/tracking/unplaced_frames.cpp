@@ -72,6 +72,8 @@ std::string problem_of(const TrackOutcome& outcome, int needed) {
   const std::string state = msg::to_string(outcome.state), found = std::to_string(outcome.inliers);
   if (outcome.at_place()) return state + ": a place was recognised, the next frames have to agree";
   if (outcome.state == State::kOk) return "";
+  if (outcome.contradicted)
+    return state + ": within the last second, the IMU expected another pose than was found; either may be wrong";
   if (outcome.state == State::kDoubtful)
     return state + ": " + std::to_string(std::lround(100 * outcome.consistency)) +
            " % of the matched landmarks agree closely with the pose, which is known to " +
