@@ -84,6 +84,7 @@ bool Tracker::contradicts_prior(const Frame& frame, const LocalMapTracking& trac
 
 /// The prior learns from a measured pose; `covariance` is relative to the map.
 void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pose) {
+  constexpr double kDoubtful_m = 0.02, kDoubtful_rad = 0.02;  // 2.5 of them are the limits of docs/integrity.md
   const PredictedPose measured{last_.T_world_camera, config_.prior.visual_factor * covariance};
   const bool found_again = !had_pose && (!expected_ || pose_distance2(*expected_, measured) > kMaxPoseDistance2);
   if (found_again) {
@@ -92,9 +93,11 @@ void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pos
   }
   if (expected_ && pose_distance2(*expected_, {last_.T_world_camera, covariance}) > contradiction2()) {
     prior_->doubt();
-    contradicted_ns_ = last_.frame->stamp_ns;
     const geometry::Vector6d off = geometry::pose_difference(expected_->T_world_camera, last_.T_world_camera);
-    contradiction_ = off * off.transpose();
+    if (off.head<3>().norm() > kDoubtful_m || off.tail<3>().norm() > kDoubtful_rad) {
+      contradicted_ns_ = last_.frame->stamp_ns;
+      contradiction_ = off * off.transpose();
+    }
   }
   prior_->believe(measured);
 }
