@@ -8,6 +8,7 @@
 #include <array>
 #include <chrono>
 #include <condition_variable>
+#include <csignal>
 #include <ctime>
 #include <mutex>
 #include <ostream>
@@ -177,6 +178,22 @@ std::vector<camera::FoundCamera> all_cameras(const bus::BusOptions& bus) {
 
 constexpr int kLooksForAnnouncement = 3;  // of a second each, until a camera on DDS announces itself
 
+/// Threads that Fast DDS starts here stay for the process: they must not take the Ctrl-C of the run that follows.
+std::string look_for_realsense(const std::string& serial, const bus::BusOptions& options) {
+  std::string why;
+  bool interrupted = false;
+  {
+    service::InterruptSignals signals;
+    for (int look = 0; look < kLooksForAnnouncement && !interrupted; ++look) {
+      why = why_no_camera("realsense-dds", serial, camera::find_realsense_cameras(options));
+      if (why.empty()) break;
+      interrupted = signals.take() > 0;
+    }
+  }
+  if (interrupted) std::raise(SIGINT);
+  return why;
+}
+
 int clean(std::ostream& out) {
   const bus::CleanReport report = bus::remove_shm_leftovers();
   for (const bus::ShmFile& file : report.removed) out << "removed  " << file.name << "  " << mib(file.bytes) << '\n';
@@ -208,11 +225,8 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
 }  // namespace
 
 std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options) {
-  std::string why;
-  for (int look = 0; look < kLooksForAnnouncement; ++look) {
-    why = why_no_camera("realsense-dds", serial, camera::find_realsense_cameras(options));
-    if (why.empty()) return {};
-  }
+  std::string why = look_for_realsense(serial, options);
+  if (why.empty()) return {};
   why += fmt::format("\n  no such camera announces itself on realsense/device-info in DDS domain {}", options.domain);
   return options.network.loopback_only ? why + "; on this host only: --profile lan adds the network" : why;
 }

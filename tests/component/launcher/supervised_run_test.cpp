@@ -133,7 +133,7 @@ TEST_F(SupervisedRunTest, a_camera_of_this_host_that_is_not_there_ends_the_run_b
   std::vector<std::string> local = arguments();
   local[2] = "openni2:1d27/0609@250/250";
   EXPECT_EQ(rtd_.run(local), 2);
-  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--source openni2:1d27/0609@250/250"), HasSubstr("'rtd doctor' says")));
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--source 'openni2:1d27/0609@250/250'"), HasSubstr("'rtd doctor' says")));
   EXPECT_FALSE(fs::exists(scratch_ / "out/logs/slam.log"));
 }
 
