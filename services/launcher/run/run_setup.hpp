@@ -133,8 +133,8 @@ struct RunSetup : RunOptions {
   /// Where the services write their parts of --trace.
   std::string trace_folder() const { return out_dir + "/trace"; }
   std::string groundtruth_path() const { return out_dir + "/groundtruth.txt"; }
-  /// Whether the report shows masks of people: those that others read too, or that are asked for. Reading them makes the
-  /// detector compute them.
+  /// Whether the report shows masks of people: those that others read too, or that are asked for. Reading them makes
+  /// the detector compute them.
   bool reports_masks() const;
 };
 
