@@ -9,6 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "common/vision/lanes.hpp"
+
 #if defined(__SSE4_1__)
 #include <smmintrin.h>
 #endif
@@ -87,13 +89,23 @@ void resample(const std::uint8_t* row, const std::vector<Block>& blocks, std::in
   }
 }
 
-void blend(const std::int16_t* __restrict first, const std::int16_t* __restrict second, const Between& row, int columns,
-           std::uint8_t* __restrict to) {
+RTD_INLINE void blend(const std::int16_t* __restrict first, const std::int16_t* __restrict second, const Between& row,
+                      int columns, std::uint8_t* __restrict to) {
+  const std::int16_t weight_first = row.weight_first, weight_second = row.weight_second;
   for (int x = 0; x < columns; ++x) {
-    const auto a = static_cast<std::int16_t>((row.weight_first * first[x]) >> 16);
-    const auto b = static_cast<std::int16_t>((row.weight_second * second[x]) >> 16);
-    to[x] = static_cast<std::uint8_t>((a + b + 2) >> 2);
+    const auto a = static_cast<std::int16_t>((weight_first * first[x]) >> 16);
+    const auto b = static_cast<std::int16_t>((weight_second * second[x]) >> 16);
+    to[x] = static_cast<std::uint8_t>(static_cast<std::uint16_t>(a + b + 2) >> 2U);
   }
+}
+
+void blend_16(const std::int16_t* first, const std::int16_t* second, const Between& row, int columns,
+              std::uint8_t* to) {
+  blend(first, second, row, columns, to);
+}
+RTD_AVX2 void blend_32(const std::int16_t* first, const std::int16_t* second, const Between& row, int columns,
+                       std::uint8_t* to) {
+  blend(first, second, row, columns, to);
 }
 
 /// Whether every pixel of the result lies between pixels of the source, whose neighbours fit into a block.
@@ -114,11 +126,12 @@ void shrink(const cv::Mat& from, cv::Size size, cv::Mat& to) {
   std::array<std::vector<std::int16_t>, 2> resampled;  // rows of the source, even ones and odd ones
   for (auto& row : resampled) row.resize(static_cast<std::size_t>(size.width));
   const auto at = [&](int row) { return resampled[static_cast<std::size_t>(row % 2)].data(); };
+  const auto blend_rows = vision::wide_vectors() ? blend_32 : blend_16;
   int next = 0;
   for (int y = 0; y < size.height; ++y) {
     const Between& row = rows[static_cast<std::size_t>(y)];
     for (next = std::max(next, row.first); next <= row.first + 1; ++next) resample(from.ptr(next), blocks, at(next));
-    blend(at(row.first), at(row.first + 1), row, size.width, to.ptr(y));
+    blend_rows(at(row.first), at(row.first + 1), row, size.width, to.ptr(y));
   }
 }
 
