@@ -146,6 +146,7 @@ struct MapperConfig {
   double redundant_ratio = 0.9;
   double old_redundant_ratio = 0.7;
   double old_after_s = 120.0;
+  double ba_gap_s = 0.1;
   int ba_keyframes = 12;
   int ba_fixed_keyframes = 20;
   int ba_iterations_robust = 3;
@@ -162,6 +163,7 @@ struct MapperConfig {
     binder.field("old_redundant_ratio", old_redundant_ratio, {0.5, 1.0},
                  "the same for old keyframes, so that a map of one place does not grow for hours");
     binder.field("old_after_s", old_after_s, {0.0, 1e9}, "a keyframe is old after that long");
+    binder.field("ba_gap_s", ba_gap_s, {0.0, 10.0}, "local bundle adjustments are so far apart, once a map has grown");
     binder.field("ba_keyframes", ba_keyframes, {2, 200}, "keyframes that local bundle adjustment optimises");
     binder.field("ba_fixed_keyframes", ba_fixed_keyframes, {1, 200}, "keyframes that hold the gauge");
     binder.field("ba_iterations_robust", ba_iterations_robust, {1, 100},

@@ -3,8 +3,10 @@
 #include "services/slam/core/mapping/mapper.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/geometry/se3.hpp"
+#include "common/msg/stamps.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
 
@@ -39,8 +41,9 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   create_landmarks(keyframe);
   if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
   std::vector<KeyframeId> adjusted;
-  if (!busy() && map_.keyframe_count(map_.find_keyframe(keyframe)->map) > 2) {
+  if (!busy() && due_for_adjustment(keyframe)) {
     adjusted = adjust_local_map(map_, keyframe, config_.mapper, interrupted);
+    adjusted_ns_ = map_.find_keyframe(keyframe)->frame->stamp_ns;
   }
   cull_keyframes(keyframe);
   if (vocabulary_ != nullptr) places_.add(keyframe, vocabulary_->describe(proposal.frame->features));
@@ -51,6 +54,15 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
       {KeyframeChange::Kind::kCreated, keyframe, created.frame->seq, created.frame->stamp_ns, created.T_world_camera});
   note_moved_keyframes(std::move(adjusted));
   return keyframe;
+}
+
+bool Mapper::due_for_adjustment(KeyframeId newest) const {
+  constexpr std::size_t kYoung = 10;  // keyframes of a map that is adjusted each time
+  const Keyframe& keyframe = *map_.find_keyframe(newest);
+  const std::size_t keyframes = map_.keyframe_count(keyframe.map);
+  if (keyframes <= 2) return false;
+  const double since_s = std::abs(msg::minus_s(keyframe.frame->stamp_ns, adjusted_ns_));
+  return keyframes < kYoung || since_s >= config_.mapper.ba_gap_s;
 }
 
 KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {

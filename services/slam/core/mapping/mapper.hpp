@@ -86,6 +86,7 @@ class Mapper {
   void note_all_moved_keyframes();
   void note_moved_keyframes(std::vector<KeyframeId> adjusted);
   void note_if_moved(KeyframeId keyframe);
+  bool due_for_adjustment(KeyframeId newest) const;
 
   SlamConfig config_;
   Map map_;
@@ -99,6 +100,7 @@ class Mapper {
   KeyframeId next_checked_ = 0;                        ///< in turn, of those that were not adjusted
   std::vector<KeyframeChange> changes_;
   std::uint64_t snapshots_ = 0;
+  std::int64_t adjusted_ns_ = 0;  ///< stamp of the keyframe after which the map was last adjusted
 };
 
 }  // namespace rtd::slam
