@@ -22,7 +22,7 @@ struct Techniques {
   // What may move
   bool motion_levels = true, depth_masks = true, flat_objects = true, object_holes = true;
   // What moves
-  bool depth_check = true, feature_votes = true, look_back = true, arrivals = true;
+  bool depth_check = true, feature_votes = true, look_back = true, arrivals = true, object_drift = true;
   bool noise_aware_tau = true, mover_memory = true, mover_tracks = true, surface_poses = true;
   // One probability
   bool belief = true, resting_objects = true, feature_weights = true;
@@ -49,6 +49,7 @@ inline constexpr NamedTechnique kTechniques[] = {
     {"feature_votes", &Techniques::feature_votes, "displaced features do not vote for their surface"},
     {"look_back", &Techniques::look_back, "no look back over a second for very slow movers"},
     {"arrivals", &Techniques::arrivals, "old views continue condemning what has arrived and stopped"},
+    {"object_drift", &Techniques::object_drift, "a person's features vote one by one, not by their median shift"},
     {"noise_aware_tau", &Techniques::noise_aware_tau, "the paper's 0.4 m at every depth"},
     {"mover_memory", &Techniques::mover_memory, "movers must be seen moving in each frame"},
     {"mover_tracks", &Techniques::mover_tracks, "movers that return to the view are new"},
@@ -138,6 +139,8 @@ struct BeliefConfig {
   double min_moving_cells = 0.2;
   int min_moving_votes = 8;
   double min_moving_votes_share = 0.35;
+  double drift_sigmas = 4.0;
+  double drift_floor_px = 0.5;
   double max_dynamic_cells = 0.05;
   double min_lasting_cells = 0.3;
   int min_resting_votes = 12;
@@ -163,6 +166,9 @@ struct BeliefConfig {
     binder.field("min_moving_cells", min_moving_cells, {0.01, 1.0}, "share of its cells dynamic: the object moves");
     binder.field("min_moving_votes", min_moving_votes, {1, 2048}, "or this many of its features displaced");
     binder.field("min_moving_votes_share", min_moving_votes_share, {0.01, 1.0}, "... and this share of them");
+    binder.field("drift_sigmas", drift_sigmas, {0.5, 1000.0},
+                 "or their median shift longer than this many standard deviations");
+    binder.field("drift_floor_px", drift_floor_px, {0.0, 100.0}, "... to which the pose adds this much, px");
     binder.field("max_dynamic_cells", max_dynamic_cells, {0.0, 1.0}, "share of its cells dynamic: less, it may rest");
     binder.field("min_lasting_cells", min_lasting_cells, {0.0, 1.0}, "... this share there 0.4 s ago");
     binder.field("min_resting_votes", min_resting_votes, {0, 2048}, "... this many features at their place");

@@ -20,6 +20,7 @@
 #include "common/process/out_folder.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/command_line.hpp"
+#include "common/service/log.hpp"
 #include "common/service/run_service.hpp"
 #include "common/service/standard_streams.hpp"
 #include "common/service/trace.hpp"
@@ -130,6 +131,7 @@ void end_trace(const RunSetup& setup, Terminal& terminal) {
 RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& plans) {
   service::InterruptSignals signals;
   Terminal terminal = open_terminal(setup.quiet);
+  service::init_logging("launcher", "warn");
   survive_lost_locks();
   service::BoundedEnd end("rtd run", kEndOfBus);
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus_options);

@@ -135,10 +135,20 @@ TEST(Techniques, arrivals_off_uses_what_has_stopped_later) {
 }
 
 TEST(Techniques, look_back_off_leaves_what_creeps) {
-  const FeatureVotes votes{{}, {0}, {60}};  // all features of the one cluster have moved
+  const FeatureVotes votes{{}, {0}, {60}, {}};  // all features of the one cluster have moved
   EXPECT_TRUE(votes.cluster_creeps(0, effective_config(config_of(FilterMode::kRtd, {})).geometry));
   const FilterConfig without = config_of(FilterMode::kRtd, {&Techniques::look_back});
   EXPECT_FALSE(votes.cluster_creeps(0, effective_config(without).geometry));
+}
+
+TEST(Techniques, object_drift_off_leaves_a_common_shift) {
+  ObjectDrift drift;
+  drift.features = 60;
+  drift.shift_px = 20;
+  drift.sigma_px = 0.2F;
+  EXPECT_TRUE(drifts(drift, effective_config(config_of(FilterMode::kRtd, {})).belief));
+  const FilterConfig without = config_of(FilterMode::kRtd, {&Techniques::object_drift});
+  EXPECT_FALSE(drifts(drift, effective_config(without).belief));
 }
 
 TEST(Techniques, mover_tracks_give_a_mover_an_identity) {

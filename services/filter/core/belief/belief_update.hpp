@@ -13,6 +13,20 @@
 
 namespace rtd::filter {
 
+/// How far an object as a whole has moved in the image against the static world.
+struct ObjectDrift {
+  int features = 0;
+  float shift_px = 0;  ///< length of the median displacement of its features
+  float sigma_px = 0;  ///< its standard deviation, from the spread of the features
+};
+
+/// The drift of the features on these cells. The median of n features is sqrt(n) times more precise than each of them,
+/// and waving arms in front of a trunk at rest do not change it.
+ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells);
+
+/// Is the shift larger than the noise of the features and of the pose?
+bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
+
 /// What geometry finds out about an object with a class in this frame.
 enum class ObjectMotion { kUnknown, kMoving, kResting };
 

@@ -75,6 +75,7 @@ FilterConfig with_techniques_applied(FilterConfig config) {
   }
   if (!on.look_back) config.geometry.min_creeping_features = std::numeric_limits<int>::max();
   if (!on.arrivals) config.geometry.max_unsettled_share = -1;  // no share is small enough
+  if (!on.object_drift) config.belief.drift_sigmas = std::numeric_limits<double>::infinity();
   if (!on.noise_aware_tau) {
     config.geometry.tau_floor_m = kPaperTauM;
     config.geometry.tau_sigmas = 0;

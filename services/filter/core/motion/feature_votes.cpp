@@ -30,6 +30,7 @@ FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geom
     const auto shift_px = displacement_px(sighting, camera, T_camera_world);
     if (!shift_px) continue;
     const int cell = clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y());
+    votes.shifts.push_back({cell, static_cast<float>(shift_px->x()), static_cast<float>(shift_px->y())});
     const double chi2 = shift_px->squaredNorm() / (sighting.sigma_px * sighting.sigma_px);
     const bool moving = chi2 > config.min_moving_chi2;
     if (!moving && chi2 >= config.max_static_chi2) continue;

@@ -16,11 +16,18 @@ struct FeatureVote {
   bool moving = false;
 };
 
+/// How far a feature found again lies from its place in the static world.
+struct FeatureShift {
+  int cell = 0;
+  float x_px = 0, y_px = 0;
+};
+
 /// The votes of all features found again and their count per depth cluster, docs/theory/dynamic_points.md Eq. (5).
 /// Displacements between the two limits of the config are no vote.
 struct FeatureVotes {
   std::vector<FeatureVote> votes;
   std::vector<int> resting, moving;  ///< per cluster
+  std::vector<FeatureShift> shifts;  ///< of every feature found again, those without a vote too
   /// Enough of the cluster's features are displaced.
   bool cluster_moves(std::size_t cluster, const GeometryConfig& config) const;
   /// Enough of the cluster's features are at their place, and hardly one is not.
