@@ -49,7 +49,7 @@ class EndToEndTest : public testing::Test {
 };
 
 TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
-  ASSERT_EQ(rtd_.run(arguments(121, "synthetic:office?frames=30", {"--pace", "lockstep"})), 0) << rtd_.output();
+  ASSERT_EQ(rtd_.run(arguments(61, "synthetic:office?frames=30", {"--pace", "lockstep"})), 0) << rtd_.output();
   const nlohmann::json json = report();
   for (const char* key : {"frames_in", "frames_tracked", "frames_dropped", "coverage", "ate_rmse_m", "rpe_trans_rmse_m",
                           "rpe_rot_rmse_deg", "latency_ms", "stage_ms", "cpu_s", "peak_rss_mb"}) {
@@ -73,11 +73,11 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
 
 TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_run) {
   const std::vector<std::string> lockstep = {"--pace", "lockstep", "--detector", "off"};
-  ASSERT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=30", lockstep)), 0) << rtd_.output();
+  ASSERT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=30", lockstep)), 0) << rtd_.output();
   const std::string without = text_of(out_ + "/trajectory.txt");
   EXPECT_TRUE(report()["static_map"].is_null());
   RtdCommand dense;
-  std::vector<std::string> command = arguments(129, "synthetic:office?frames=30", lockstep);
+  std::vector<std::string> command = arguments(69, "synthetic:office?frames=30", lockstep);
   command.insert(command.end(), {"--dense", "--record", scratch_ / "run.mcap", "--trace", scratch_ / "trace.json"});
   ASSERT_EQ(dense.run(command), 0) << dense.output();
   EXPECT_EQ(text_of(out_ + "/trajectory.txt"), without) << "byte for byte";
@@ -107,7 +107,7 @@ TEST_F(EndToEndTest, a_run_that_used_less_than_half_of_its_frames_is_no_success)
   for (const auto& file : fs::directory_iterator(folder + "/rgb")) images.push_back(file.path());
   std::ranges::sort(images);
   for (std::size_t i = 4; i < images.size(); ++i) std::ofstream(images[i], std::ios::trunc);
-  EXPECT_EQ(rtd_.run(arguments(134, "tum:" + folder, {"--pace", "lockstep", "--detector", "off"})), 3);
+  EXPECT_EQ(rtd_.run(arguments(74, "tum:" + folder, {"--pace", "lockstep", "--detector", "off"})), 3);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("only 4 of 12 frames were used; 8 x color_unreadable: colour images are"),
                                    HasSubstr("12 given, 4 used, 4 with pose  (color_unreadable 8)")));
   EXPECT_NEAR(report()["coverage"], 1.0 / 3, 1e-9);
@@ -118,21 +118,21 @@ TEST_F(EndToEndTest, a_recording_brings_its_imu_and_its_transforms) {
   const fs::path recording = fs::path(data == nullptr ? "" : data) / "field/recording_with_imu_and_tf/imu_tf.mcap";
   if (!fs::exists(recording)) GTEST_SKIP() << "RTD_DATA_DIR has no field/recording_with_imu_and_tf";
   const std::vector<std::string> motion = {"--detector", "off", "--imu", "/camera/imu", "--camera-in-base", "tf"};
-  ASSERT_EQ(rtd_.run(arguments(118, "mcap:" + recording.string(), motion)), 0) << rtd_.output();
+  ASSERT_EQ(rtd_.run(arguments(58, "mcap:" + recording.string(), motion)), 0) << rtd_.output();
   EXPECT_EQ(report()["frames_tracked"], 6);
 }
 
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
-  EXPECT_EQ(rtd_.run(arguments(129, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
+  EXPECT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("no such folder")));
 }
 
 TEST_F(EndToEndTest, a_second_run_into_the_same_folder_is_refused_and_deletes_nothing) {
-  rtd_.start(arguments(132, "synthetic:office?frames=0", {"--detector", "off"}));
+  rtd_.start(arguments(72, "synthetic:office?frames=0", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   const std::string pid = std::to_string(rtd_.process());
   RtdCommand second, ablation;
-  EXPECT_EQ(second.run(arguments(133, "synthetic:office?frames=5")), 2);
+  EXPECT_EQ(second.run(arguments(73, "synthetic:office?frames=5")), 2);
   EXPECT_THAT(second.output(),
               AllOf(HasSubstr("--out " + out_), HasSubstr("process " + pid), HasSubstr("another folder")));
   EXPECT_EQ(ablation.run({"ablate", "--source", "synthetic:office?frames=5", "--out", out_, "--domain", "73"}), 2);
@@ -142,7 +142,7 @@ TEST_F(EndToEndTest, a_second_run_into_the_same_folder_is_refused_and_deletes_no
   EXPECT_EQ(rtd_.wait(), 130) << rtd_.output();
   EXPECT_TRUE(fs::exists(out_ + "/report.json"));
   RtdCommand third;
-  EXPECT_EQ(third.run(arguments(132, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
+  EXPECT_EQ(third.run(arguments(72, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
       << third.output();
 }
 
@@ -152,7 +152,7 @@ TEST_F(EndToEndTest, files_that_a_run_clears_are_not_reached_through_links) {
   fs::create_directories(out_);
   fs::create_symlink(scratch_ / "elsewhere", out_ + "/logs");
   fs::create_symlink(scratch_ / "elsewhere/notes", out_ + "/trajectory.txt");
-  ASSERT_EQ(rtd_.run(arguments(132, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
+  ASSERT_EQ(rtd_.run(arguments(72, "synthetic:office?frames=10", {"--pace", "lockstep", "--detector", "off"})), 0)
       << rtd_.output();
   EXPECT_EQ(text_of(scratch_ / "elsewhere/notes"), "mine");
   EXPECT_EQ(std::distance(fs::directory_iterator(scratch_ / "elsewhere"), fs::directory_iterator()), 1);
@@ -173,8 +173,7 @@ TEST_F(EndToEndTest, a_run_whose_output_is_not_read_continues_to_its_report) {
 }
 
 TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkpoint) {
-  rtd_.start(
-      arguments(130, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
+  rtd_.start(arguments(70, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
   ASSERT_EQ(::kill(pid_of("slam"), SIGKILL), 0);
@@ -192,23 +191,23 @@ TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkp
 
 TEST_F(EndToEndTest, a_second_run_finds_its_place_in_the_map_of_the_first) {
   const std::vector<std::string> quick = {"--pace", "lockstep", "--detector", "off"};
-  ASSERT_EQ(rtd_.run(arguments(131, "synthetic:office?frames=30", quick)), 0) << rtd_.output();
+  ASSERT_EQ(rtd_.run(arguments(71, "synthetic:office?frames=30", quick)), 0) << rtd_.output();
   const std::string map = out_ + "/map.rtdmap", before = text_of(map);
   RtdCommand info, second;
   EXPECT_EQ(info.run({"map", "info", map}), 0) << info.output();
   EXPECT_THAT(info.output(), HasSubstr("checksums all right"));
-  std::vector<std::string> command = arguments(131, "synthetic:office?frames=30", quick);
+  std::vector<std::string> command = arguments(71, "synthetic:office?frames=30", quick);
   command.insert(command.end(), {"--map", map, "--localize-only"});  // the same folder: the map is not cleared away
   ASSERT_EQ(second.run(command), 0) << second.output();
   EXPECT_GE(report()["coverage"], 0.93) << "two of 30 frames may go by until a place is believed";
   EXPECT_EQ(text_of(map), before);
   RtdCommand refused;
-  EXPECT_EQ(refused.run(arguments(131, "synthetic:office?frames=30", {"--map", scratch_ / "none.rtdmap"})), 2);
+  EXPECT_EQ(refused.run(arguments(71, "synthetic:office?frames=30", {"--map", scratch_ / "none.rtdmap"})), 2);
   EXPECT_THAT(refused.output(), HasSubstr("none.rtdmap: no such file"));
 }
 
 TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_completes) {
-  rtd_.start(arguments(122, "synthetic:office?frames=150", {"--detector", "off"}));
+  rtd_.start(arguments(62, "synthetic:office?frames=150", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
   ASSERT_EQ(::kill(pid_of("filter"), SIGKILL), 0);
@@ -223,7 +222,7 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
 }
 
 TEST_F(EndToEndTest, a_slam_that_hangs_is_killed_and_finds_its_place_again) {
-  rtd_.start(arguments(141, "synthetic:office?frames=0",
+  rtd_.start(arguments(81, "synthetic:office?frames=0",
                        {"--detector", "off", "--set", "launcher.hung_after_ms=2000", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
   ASSERT_EQ(::kill(pid_of("slam"), SIGSTOP), 0);
@@ -235,7 +234,7 @@ TEST_F(EndToEndTest, a_slam_that_hangs_is_killed_and_finds_its_place_again) {
 }
 
 TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_results) {
-  rtd_.start(arguments(123, "synthetic:office?frames=0", {"--detector", "off"}));
+  rtd_.start(arguments(63, "synthetic:office?frames=0", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
   const auto pressed = std::chrono::steady_clock::now();
@@ -250,7 +249,7 @@ TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_resu
 }
 
 TEST_F(EndToEndTest, the_camera_of_an_endless_run_is_restarted_and_slam_keeps_its_map) {
-  rtd_.start(arguments(132, "synthetic:office?frames=0", {"--detector", "off"}));
+  rtd_.start(arguments(72, "synthetic:office?frames=0", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
   ASSERT_EQ(::kill(pid_of("camera"), SIGKILL), 0);
@@ -265,25 +264,25 @@ TEST_F(EndToEndTest, the_camera_of_an_endless_run_is_restarted_and_slam_keeps_it
 }
 
 TEST_F(EndToEndTest, a_missing_folder_is_named) {
-  EXPECT_EQ(rtd_.run(arguments(124, "tum:/nonexistent/folder")), 2);
+  EXPECT_EQ(rtd_.run(arguments(64, "tum:/nonexistent/folder")), 2);
   EXPECT_THAT(rtd_.output(), HasSubstr("/nonexistent/folder"));
 }
 
 TEST_F(EndToEndTest, an_unknown_key_is_refused_with_the_nearest_one) {
-  EXPECT_EQ(rtd_.run(arguments(125, "synthetic:office?frames=5", {"--set", "filter.mod=rtd"})), 2);
+  EXPECT_EQ(rtd_.run(arguments(65, "synthetic:office?frames=5", {"--set", "filter.mod=rtd"})), 2);
   EXPECT_THAT(rtd_.output(), HasSubstr("did you mean 'filter.mode'?"));
 }
 
 TEST_F(EndToEndTest, without_weights_it_says_so_and_runs_on_geometry) {
   setenv("RTD_MODEL_DIR", (scratch_ / "nowhere").c_str(), 1);
   setenv("XDG_CACHE_HOME", (scratch_ / "nowhere").c_str(), 1);
-  EXPECT_EQ(rtd_.run(arguments(126, "synthetic:office?frames=10", {"--pace", "asap"})), 0) << rtd_.output();
+  EXPECT_EQ(rtd_.run(arguments(66, "synthetic:office?frames=10", {"--pace", "asap"})), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), HasSubstr("no detector weights"));
   EXPECT_EQ(report()["frames_tracked"], 10);
 }
 
 TEST_F(EndToEndTest, a_second_run_in_the_same_domain_is_refused_and_leaves_the_first_alone) {
-  rtd_.start(arguments(128, "synthetic:office?frames=60", {"--detector", "off", "--pace", "lockstep"}));
+  rtd_.start(arguments(68, "synthetic:office?frames=60", {"--detector", "off", "--pace", "lockstep"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   RtdCommand second;
   EXPECT_EQ(second.run({"run", "--source", "synthetic:office", "--domain", "68", "--out", scratch_ / "second"}), 2);
