@@ -32,7 +32,7 @@ class OneWayTest : public ::testing::TestWithParam<std::pair<const char*, const 
     ticker_.join();
   }
 
-  static std::uint32_t domain() { return 60 + 2 * (static_cast<std::uint32_t>(getpid()) % 40); }
+  static std::uint32_t domain() { return 60 + 2 * (static_cast<std::uint32_t>(getpid()) % 20); }
   static std::shared_ptr<bus::RawBus> connect(const std::string& vendor, std::uint32_t domain) {
     bus::BusOptions options;
     options.vendor = vendor;
