@@ -11,7 +11,6 @@ namespace rtd::slam {
 namespace {
 
 /// Makes a keyframe of every frame of a walk at 30 Hz: how many of the last 20 a bundle adjustment moved at once.
-/// once.
 int count_adjusted(double ba_gap_s) {
   constexpr std::uint64_t kFrames = 32, kCounted = 20;
   SlamConfig config;
