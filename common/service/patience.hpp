@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+
 #include "common/service/pacer.hpp"
 
 namespace rtd::service {
@@ -19,6 +21,11 @@ struct Patience {
 /// on a busy host.
 constexpr Patience patience_of(Pace pace) {
   return pace == Pace::kRealtime ? Patience{1'500, 3'000, 0, 0} : Patience{30'000, 10'000, 60'000, 90'000};
+}
+
+/// How often a service without a frame looks at its state: until its first one, others wait for it to be ready.
+constexpr std::chrono::milliseconds state_period(bool begun) {
+  return std::chrono::milliseconds(begun ? 50 : 5);
 }
 
 /// Of the paces that play every frame.

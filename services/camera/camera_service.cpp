@@ -60,10 +60,13 @@ service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace 
   return pacer;
 }
 
+/// It has no heartbeat, but subscribes to the frames once it misses no result.
+constexpr char kLauncher[] = "launcher";
+
 /// Readers of frames and JPEGs that a service has. A recorder of a run takes both, and misses none.
 int readers_of(const std::string& service) {
   if (service == "record") return 2;
-  return service == "filter" || service == "detector" || service == "dense" ? 1 : 0;
+  return service == "filter" || service == "detector" || service == "dense" || service == kLauncher ? 1 : 0;
 }
 
 }  // namespace
@@ -183,7 +186,7 @@ std::vector<std::string> CameraService::missing() const {
   std::vector<std::string> absent;
   int expected = 0;
   for (const std::string& name : config_.wait_for) {
-    if (!runtime_.heartbeat.ready(name)) absent.push_back(name);
+    if (name != kLauncher && !runtime_.heartbeat.ready(name)) absent.push_back(name);
     expected += readers_of(name);
   }
   const int readers = publisher_.frame_readers() + publisher_.jpeg_readers();

@@ -18,6 +18,7 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/patience.hpp"
 #include "common/service/onnxruntime_locator.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
@@ -45,7 +46,6 @@ msg::Detection2DArray to_message(const std::vector<vision::Detection>& detection
 namespace {
 
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
-constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::chrono::milliseconds kLookAtSlam{100};
 constexpr std::int64_t kSlamGoneNs = 1'500'000'000;  // without a heartbeat
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
@@ -198,7 +198,7 @@ void DetectorService::work(std::size_t worker) {
 
 std::optional<DetectorService::Taken> DetectorService::take() {
   const std::lock_guard lock(take_mutex_);
-  std::optional<Arrival> arrival = arrivals_->pop_for(kStatePeriod);
+  std::optional<Arrival> arrival = arrivals_->pop_for(service::state_period(taken_ > 0));
   if (!arrival) return std::nullopt;
   return Taken{std::move(*arrival), taken_++};
 }

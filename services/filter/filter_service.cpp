@@ -14,6 +14,7 @@
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/patience.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/filter_messages.hpp"
@@ -23,7 +24,6 @@ namespace rtd::filter {
 namespace {
 
 constexpr std::size_t kRealtimeQueue = 2, kEveryFrameQueue = 8;
-constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr int kLastLoadStep = static_cast<int>(service::kLoadSteps.size()) - 1;
 constexpr double kFullWorkCores = 0.9;                 // camera, filter and slam at 30 Hz, without a detector
 constexpr std::chrono::milliseconds kLookAtSlam{100};  // whether it is still there
@@ -130,8 +130,9 @@ void FilterService::prepare_frames() {
 }
 
 std::optional<FilterService::Work> FilterService::next_frame() {
-  if (runtime_.pace == service::Pace::kRealtime) return prepared_->pop_for(kStatePeriod);
-  auto arrival = frames_->pop_for(kStatePeriod);
+  const auto longest_wait = service::state_period(published_ > 0);
+  if (runtime_.pace == service::Pace::kRealtime) return prepared_->pop_for(longest_wait);
+  auto arrival = frames_->pop_for(longest_wait);
   return arrival ? std::optional(Work{std::move(*arrival), std::nullopt, nullptr}) : std::nullopt;
 }
 

@@ -13,6 +13,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/patience.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
@@ -21,7 +22,6 @@ namespace rtd::slam {
 namespace {
 
 constexpr std::size_t kRealtimeQueue = 4, kEveryFrameQueue = 8;
-constexpr std::chrono::milliseconds kStatePeriod{50};
 constexpr std::uint64_t kFramesUntilSilent = 30;  // a driver may be found after the first frames
 constexpr std::int64_t kDiagnosticsPeriodNs = 1'000'000'000;
 
@@ -132,7 +132,7 @@ service::ExitCode SlamService::run() {
     runtime_.heartbeat.tick();
     report_state();
     commands_->serve();
-    const auto frame = arrivals_->pop_for(kStatePeriod);
+    const auto frame = arrivals_->pop_for(service::state_period(counters_.frames > 0));
     if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;
     if (frame) answer(**frame);
     if (frame) last_frame_ = *frame;

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -69,6 +70,15 @@ std::vector<std::uint32_t> domains_in_use(const std::string& udp_table) {
   for (std::uint32_t domain = 0; domain < kDomains; ++domain)
     if (ports.contains(discovery_port(domain))) domains.push_back(domain);
   return domains;
+}
+
+bool surely_empty(const BusOptions& options, const std::string& udp_table) {
+  const NetworkOptions& network = options.network;
+  if (!network.loopback_only || !network.multicast || !network.peers.empty() || !network.discovery_server.empty())
+    return false;
+  const std::vector<std::uint32_t> in_use = domains_in_use(udp_table);
+  return std::ifstream(udp_table).good() &&
+         std::ranges::count(in_use, static_cast<std::uint32_t>(options.domain)) == 0;
 }
 
 std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table) {

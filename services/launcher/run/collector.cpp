@@ -44,22 +44,38 @@ std::unique_ptr<Collector::Readers> Collector::subscribe() {
   auto readers = std::make_unique<Readers>();
   const auto recipient = readers->recipient = std::make_shared<Recipient>();
   recipient->collector = this;
-  const auto deliver = [recipient](const auto& action) {
-    const std::lock_guard lock(recipient->mutex);
-    if (recipient->collector != nullptr) action(*recipient->collector);
+  const auto add = [recipient](const auto& message) {
+    deliver(*recipient, [&](Collector& collector) { collector.add(*message); });
   };
-  const auto add = [deliver](const auto& message) { deliver([&](Collector& collector) { collector.add(*message); }); };
   readers->tracking = bus_.reader(bus::topics::kTracking, add, slam_->callbacks());
   readers->features = bus_.reader(bus::topics::kFeatures, add, filter_->callbacks());
-  readers->status = bus_.reader(bus::topics::kStatus, [deliver](const std::shared_ptr<const msg::ServiceStatus>& status,
-                                                                const bus::WriterId& writer) {
-    deliver([&](Collector& collector) { collector.add(*status, writer); });
-  });
+  readers->status = bus_.reader(
+      bus::topics::kStatus,
+      [recipient](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
+        deliver(*recipient, [&](Collector& collector) { collector.add(*status, writer); });
+      });
   if (with_masks_) readers->masks = bus_.reader(bus::topics::kPersonMasks, add);
-  readers->frames = bus::FrameReader(
-      bus_, [deliver](const auto& frame) { deliver([&](Collector& collector) { collector.add_image(frame); }); },
-      camera_->callbacks());
+  if (reads_frames_) subscribe_to_frames(*readers);
   return readers;
+}
+
+void Collector::subscribe_to_frames(Readers& readers) {
+  readers.frames = bus::FrameReader(
+      bus_,
+      [recipient = readers.recipient](const auto& frame) {
+        deliver(*recipient, [&](Collector& collector) { collector.add_image(frame); });
+      },
+      camera_->callbacks());
+}
+
+void Collector::deliver(Recipient& recipient, const std::function<void(Collector&)>& action) {
+  const std::lock_guard lock(recipient.mutex);
+  if (recipient.collector != nullptr) action(*recipient.collector);
+}
+
+void Collector::read_frames() {
+  reads_frames_ = true;
+  subscribe_to_frames(*readers_);
 }
 
 void Collector::add(const msg::TrackingResult& result) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -32,8 +33,10 @@ class Collector {
   Collector(bus::Bus& bus, FrameStore& store, const Options& options);
   ~Collector();
 
-  /// Connected to slam, and to the filter if there is one: from now on no frame is missed.
+  /// Connected to slam, and to the filter if there is one: from now on no result is missed.
   bool connected(bool with_filter = true) const;
+  /// Subscribes to the frames too: a camera that waits for the launcher sends its first one from now on.
+  void read_frames();
   /// As RecordBuilder::active_services.
   std::string active_services(const Tolerated& tolerated = {}) const;
   LiveStatus live() const;
@@ -69,6 +72,8 @@ class Collector {
   };
 
   std::unique_ptr<Readers> subscribe();
+  void subscribe_to_frames(Readers& readers);
+  static void deliver(Recipient& recipient, const std::function<void(Collector&)>& action);
   void add(const msg::TrackingResult& result);
   void add(const msg::FeatureFrame& features);
   void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
@@ -85,7 +90,7 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
-  bool keep_features_, with_masks_;
+  bool keep_features_, with_masks_, reads_frames_ = false;
   std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 
-#include "common/bus/topics.hpp"
 #include "common/camera/live_uri.hpp"
 #include "common/io/text.hpp"
-#include "common/ros2/names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/process/lost_lock.hpp"
 
@@ -16,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTick{50};
+constexpr milliseconds kTick{50}, kTickOfStart{5};
 constexpr milliseconds kMemoryPeriod{250};
 constexpr std::size_t kShownTailLines = 6;
 
@@ -70,9 +68,9 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
   }
   started_ = now();
   for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(counted(plans[i]), now());
-  ServicePlan camera = plans.back();
-  camera.has_served = [this] { return collector_.any_frame(); };
-  supervise(camera);
+  ServicePlan source = plans.back();
+  source.has_served = [this] { return collector_.any_frame(); };
+  supervise(source);
   terminal_.end_status();
   return supervisor_.outcome();
 }
@@ -127,10 +125,12 @@ void RunSession::require_none_active(const Tolerated& tolerated) const {
                              ", or choose another name with --robot");
 }
 
-void RunSession::supervise(const ServicePlan& camera) {
-  bool camera_started = false;
+/// A camera starts with the others and waits until the launcher, too, reads its frames; a replay starts only then.
+void RunSession::supervise(const ServicePlan& source) {
+  if (!setup_.replay) supervisor_.start(source, now());
+  bool plays = false;
   while (!supervisor_.all_ended() || !supervisor_.stopping()) {
-    host_.wait(kTick, signals_.fd());
+    host_.wait(plays ? kTick : kTickOfStart, signals_.fd());
     const milliseconds time = now();
     if (signals_.take() > 0) {
       const bool again = supervisor_.outcome() == RunOutcome::kInterrupted;
@@ -139,9 +139,10 @@ void RunSession::supervise(const ServicePlan& camera) {
     supervisor_.update(time);
     watch_locks();
     stop_when_decided(time);
-    if (!camera_started && !supervisor_.stopping() && camera_may_start(time)) {
-      supervisor_.start(camera, time);
-      camera_started = true;
+    if (!plays && !supervisor_.stopping() && misses_no_result(time)) {
+      collector_.read_frames();
+      if (setup_.replay) supervisor_.start(source, time);
+      plays = true;
     }
     sample_memory(time);
     while (const auto notice = collector_.take_notice()) events_.push_back(*notice);  // the terminal shows the warning
@@ -161,12 +162,9 @@ milliseconds RunSession::interrupt_grace() const {
   return milliseconds(setup_.save_map_asked ? setup_.launcher.finish_grace_ms : setup_.launcher.interrupt_grace_ms);
 }
 
-/// Waits until the services that answer the first frame are connected, so that no answer is missed. If a service never
-/// appears, the camera names it.
-bool RunSession::camera_may_start(milliseconds time) const {
-  // slam starts with transforms that the camera brings; the camera itself waits for slam before it plays.
-  const bool brings_transforms = std::ranges::count(setup_.beside, ros2::ros_topic(bus::topics::kTfStatic.name)) > 0;
-  return brings_transforms || collector_.connected(!setup_.replay.features) ||
+/// The services that answer the first frame are connected. If a service never appears, the camera names it.
+bool RunSession::misses_no_result(milliseconds time) const {
+  return collector_.connected(!setup_.replay.features) ||
          time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
 }
 

@@ -41,8 +41,8 @@ class RunSession {
 
   void require_free_domain();
   void require_none_active(const Tolerated& tolerated) const;
-  void supervise(const ServicePlan& camera);
-  bool camera_may_start(Milliseconds now) const;
+  void supervise(const ServicePlan& source);
+  bool misses_no_result(Milliseconds now) const;
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
   std::chrono::milliseconds interrupt_grace() const;

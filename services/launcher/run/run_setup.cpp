@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/bus/host/port_check.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/filter_modes.hpp"
@@ -212,7 +213,7 @@ std::vector<std::string> filter_arguments(const RunSetup& setup) {
 
 std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vector<std::string>& wait_for) {
   std::vector<std::string> arguments = {"--source",          setup.source,
-                                        "--wait-for",        fmt::format("{}", fmt::join(wait_for, ",")),
+                                        "--wait-for",        fmt::format("{},launcher", fmt::join(wait_for, ",")),
                                         "--groundtruth-out", setup.groundtruth_path()};
   if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
   if (!setup.beside.empty())
@@ -289,6 +290,7 @@ RunSetup prepare_run(const RunOptions& options) {
   choose_map(setup);
   process::make_out_folder(setup.out_dir);
   if (!setup.trace.empty()) check_trace_file(setup.trace);
+  if (bus::surely_empty(setup.bus_options)) setup.launcher.domain_check_ms = 0;
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;
 }

@@ -38,9 +38,9 @@ struct LauncherConfig {
         "silence after which a service is killed and restarted, 0 = never: for a debugger; 10000 where every frame "
         "is played");
     binder.field("domain_check_ms", domain_check_ms, {0, 10000},
-                 "looking for another run in the same domain before anything starts");
+                 "looking for another run in the same domain before anything starts, unless no process is in it");
     binder.field("connect_timeout_ms", connect_timeout_ms, {0, 60000},
-                 "longest time that the camera waits for filter and slam");
+                 "longest time that the launcher waits for filter and slam before it lets the camera play");
     binder.field("interrupt_grace_ms", interrupt_grace_ms, {0, 1500}, "from Ctrl-C to the forced end of a service");
     binder.field("finish_grace_ms", finish_grace_ms, {0, 600000},
                  "from the end of the source to the forced end: slam writes its map");

@@ -345,6 +345,22 @@ TEST_F(CameraServiceTest, waits_for_the_configured_services) {
   EXPECT_THAT(tracker.seqs(), SizeIs(3));
 }
 
+TEST_F(CameraServiceTest, waits_for_the_launcher_to_subscribe_to_frames) {
+  service::StopToken others;
+  service::Heartbeat filter(*bus_, "filter", others);
+  filter.set_state(msg::ServiceState::kReady);
+  config_.wait_for = {"filter", "launcher"};
+  config_.source = std::string(kTinyScene) + "3";
+  FakeTracker tracker(*bus_);
+  auto running = start(service::Pace::kLockstep);
+  wait_until([this] { return last_status().message.find("readers") != std::string::npos; });
+  EXPECT_THAT(last_status().message, HasSubstr("waits for 1 of 2 frame readers"));
+  EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
+  const bus::FrameReader launcher(*bus_, [](const auto&) {});
+  EXPECT_EQ(running.get(), service::kOk);
+  EXPECT_THAT(tracker.seqs(), SizeIs(3));
+}
+
 TEST_F(CameraServiceTest, names_the_missing_services_when_the_wait_is_over) {
   config_.wait_for = {"filter", "slam"};
   config_.start_timeout_s = 0.1;

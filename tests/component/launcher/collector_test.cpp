@@ -20,6 +20,7 @@ constexpr std::uint64_t kFrames = 30;
 /// The services' side of the bus: publishes what they would.
 class CollectorTest : public testing::Test {
  protected:
+  CollectorTest() { collector_.read_frames(); }
   void publish(std::uint64_t seq) {
     auto frame = frames_.loan();
     test_support::fill_header(*frame, 64, 48);
@@ -78,6 +79,7 @@ TEST_F(CollectorTest, keeps_every_frame_and_a_few_pictures) {
 TEST_F(CollectorTest, keeps_the_masks_of_people_in_its_pictures_when_it_is_to) {
   FrameList store;
   Collector collector(*bus_, store, {.samples = 6, .total = kFrames, .masks = true});
+  collector.read_frames();
   auto masks = bus_->writer(bus::topics::kPersonMasks);
   publish(0);
   for (int i = 0; i < 500 && !collector.any_frame(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -113,6 +115,18 @@ TEST_F(CollectorTest, receives_from_filter_and_slam_before_the_first_frame) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (collector_.connected() && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
   EXPECT_FALSE(collector_.connected());
+}
+
+TEST_F(CollectorTest, subscribes_to_frames_when_asked) {
+  const auto camera = bus::connect({.vendor = "inprocess", .domain = 72});
+  const bus::Writer<msg::RgbdFrame> frames = camera->writer(bus::topics::kFrame);
+  FrameList store;
+  Collector collector(*camera, store, {});
+  collector.subscribe_again();
+  EXPECT_EQ(frames.matched(), 0) << "a camera that waits for the launcher waits for this reader";
+  collector.read_frames();
+  collector.subscribe_again();
+  EXPECT_GE(frames.matched(), 1);
 }
 
 TEST_F(CollectorTest, shows_the_known_length_and_what_services_complain_about) {

@@ -87,6 +87,17 @@ TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
   EXPECT_THAT(other_domains_hint(1, path), HasSubstr("in domain 2: "));
   EXPECT_EQ(other_domains_hint(0, "/no/such/table"), "");
   EXPECT_EQ(free_participant_ports(1, path), kPeerParticipants);
+  BusOptions options;
+  EXPECT_TRUE(surely_empty(options, path));
+  EXPECT_FALSE(surely_empty(options, "/no/such/table"));
+  options.domain = 2;
+  EXPECT_FALSE(surely_empty(options, path)) << "in use";
+  options.domain = 0;
+  options.network.peers = {"127.0.0.1"};
+  EXPECT_FALSE(surely_empty(options, path)) << "they need no common port";
+  options.network = {};
+  options.network.loopback_only = false;
+  EXPECT_FALSE(surely_empty(options, path)) << "on another host";
   EXPECT_EQ(free_participant_ports(0, "/no/such/table"), kPeerParticipants);
   std::remove(path.c_str());
 }
