@@ -53,6 +53,9 @@ struct EnvironmentSetting {
   bool operator==(const EnvironmentSetting&) const = default;
 };
 
+/// bus.shm_segment_mib of a process that sends neither images nor clouds.
+inline constexpr std::uint32_t kSmallSegmentMib = 4;
+
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
   std::string vendor = default_vendor();  ///< one of available_vendors()
@@ -76,7 +79,7 @@ struct BusOptions {
     binder.field("robot", robot, "name of the robot, where several share a domain: its topics and frames are below it")
         .option("--robot", "Robot");
     binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
-    binder.field("shm_segment_mib", shm_segment_mib, {8, 1024}, "shared-memory segment of each process");
+    binder.field("shm_segment_mib", shm_segment_mib, {2, 1024}, "shared-memory segment of this process");
     binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
     binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
     binder.section("network", network);

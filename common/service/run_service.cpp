@@ -177,6 +177,7 @@ int run_service(const ServiceDefinition& definition, int argc, char** argv) {
   outlive_readers();
   CommonOptions common;
   BusConfig bus_config;
+  bus_config.options.shm_segment_mib = definition.shm_segment_mib;
   ConfigBinder binder;
   binder.section("bus", bus_config);
   definition.bind(binder);

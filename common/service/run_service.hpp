@@ -3,11 +3,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
@@ -29,6 +31,8 @@ struct ServiceDefinition {
   /// Called once the configuration is loaded. The name of its heartbeat where several processes of it may run in one
   /// domain; "": the usual one, `name`, which belongs to one process.
   std::function<std::string()> shared_name = {};
+  /// Of bus.shm_segment_mib: all of it is memory from the start on.
+  std::uint32_t shm_segment_mib = bus::BusOptions().shm_segment_mib;
 };
 
 /// Parses the command line, loads the configuration, joins the bus, installs the signal handlers, runs the service.
@@ -44,7 +48,8 @@ ExitCode run_to_end(Service&& service, const Runtime& runtime) {
 }
 
 /// Service needs: static constexpr kName, kDescription; struct Config { void bind(auto& binder); };
-/// Service(const Config&, Runtime&); ExitCode run(). It may have: static ServiceDefinition::add_options.
+/// Service(const Config&, Runtime&); ExitCode run(). It may have: static ServiceDefinition::add_options and
+/// shm_segment_mib (kShmSegmentMib).
 template <class Service>
 int run_service(int argc, char** argv) {
   typename Service::Config config;
@@ -52,6 +57,7 @@ int run_service(int argc, char** argv) {
                                [&](ConfigBinder& binder) { binder.section(Service::kName, config); },
                                [&](Runtime& runtime) { return run_to_end(Service(config, runtime), runtime); }};
   if constexpr (requires { &Service::add_options; }) definition.add_options = Service::add_options;
+  if constexpr (requires { Service::kShmSegmentMib; }) definition.shm_segment_mib = Service::kShmSegmentMib;
   return run_service(definition, argc, argv);
 }
 

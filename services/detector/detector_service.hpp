@@ -134,6 +134,7 @@ class DetectorService {
  public:
   static constexpr const char* kName = "detector";
   static constexpr const char* kDescription = "Finds people and things in camera images (YOLOX, NanoDet, YOLOv5)";
+  static constexpr std::uint32_t kShmSegmentMib = bus::kSmallSegmentMib;
   using Config = ServiceConfig;
   static void add_options(CLI::App& app, std::vector<service::GivenOption>& given);
 

@@ -23,7 +23,8 @@ int run_detector(int argc, char** argv) {
       {DetectorService::kName, DetectorService::kDescription,
        [&config](rtd::service::ConfigBinder& binder) { binder.section(DetectorService::kName, config); }, run,
        DetectorService::add_options,
-       [&config] { return config.robots.empty() ? std::string() : FleetService::kHeartbeatName; }},
+       [&config] { return config.robots.empty() ? std::string() : FleetService::kHeartbeatName; },
+       DetectorService::kShmSegmentMib},
       argc, argv);
 }
 

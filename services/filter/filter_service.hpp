@@ -38,6 +38,7 @@ class FilterService {
  public:
   static constexpr const char* kName = "filter";
   static constexpr const char* kDescription = "Extracts ORB features and finds out which of them lie on moving objects";
+  static constexpr std::uint32_t kShmSegmentMib = bus::kSmallSegmentMib;
   using Config = ServiceConfig;
 
   FilterService(const Config& config, service::Runtime& runtime);

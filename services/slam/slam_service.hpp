@@ -30,6 +30,7 @@ class SlamService {
  public:
   static constexpr const char* kName = "slam";
   static constexpr const char* kDescription = "Finds the camera's pose and maps the static world from features";
+  static constexpr std::uint32_t kShmSegmentMib = bus::kSmallSegmentMib;
   using Config = ServiceConfig;
 
   SlamService(const Config& config, service::Runtime& runtime);

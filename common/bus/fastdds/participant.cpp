@@ -33,7 +33,7 @@ namespace {
 constexpr char kNoFreePort[] =
     "every port in shared memory is in use or was left by a killed process; samples go over UDP until the other "
     "processes of this domain have been restarted";
-constexpr std::uint32_t kMinSegmentMib = 8;  // below it one image does not fit and is repaired in 20 ms instead
+constexpr std::uint32_t kMinSegmentMib = 2;  // below it what does not fit is repaired in 20 ms instead
 
 /// Fast DDS logs to stdout by default, which belongs to our programs' results. Two participants of one process send
 /// each other their liveliness by direct calls by default, each under its own lock: when both do so at once, they wait

@@ -3,6 +3,7 @@
 #include "services/detector/core/engine.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <cstdlib>
@@ -112,6 +113,14 @@ EngineError no_opencl_device(const std::string& wanted) {
                                     : "; there are: " + names_of(there)));
 }
 
+/// A GPU's driver needs the file of its kernel module. To look for OpenCL devices loads all drivers of the host: one
+/// for the CPU takes 60 MB, and half of the detector's start.
+bool may_have_gpu() {
+  constexpr std::array kFiles{"/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/mali0", "/dev/kgsl-3d0", "/dev/dxg"};
+  std::error_code unreadable;
+  return std::ranges::any_of(kFiles, [&](const char* file) { return std::filesystem::exists(file, unreadable); });
+}
+
 /// ONNX Runtime where it works, else OpenCL on a GPU, else the CPU with the cause in its name.
 std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const EngineModel& model) {
   std::string cause;
@@ -122,7 +131,7 @@ std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const E
       cause = error.what();
     }
   }
-  if (const auto gpu = choose_device({}, true)) return make_opencl(*gpu, model);
+  if (const auto gpu = may_have_gpu() ? choose_device({}, true) : std::nullopt) return make_opencl(*gpu, model);
   return make_opencv_engine(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause), std::nullopt);
 }
 

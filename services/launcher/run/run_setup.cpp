@@ -49,6 +49,7 @@ void choose_pace(RunSetup& setup) {
 /// The launcher reads its own sections; the services check theirs when they start.
 void load_config(RunSetup& setup) {
   service::BusConfig bus;
+  bus.options.shm_segment_mib = bus::kSmallSegmentMib;
   service::ConfigBinder binder;
   binder.section("bus", bus);
   binder.section("launcher", setup.launcher);
