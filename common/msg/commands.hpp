@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/msg/fields.hpp"
+#include "common/msg/parameters.hpp"
 
 /// Requests and replies of the ROS 2 services that RTD-SLAM offers and calls (common/bus/commands.hpp).
 namespace rtd::msg {
@@ -32,5 +33,19 @@ struct CommandReply {
   std::string message;
 };
 RTD_FIELDS_OF(CommandReply, "rtd_msgs/Command_Response", success, message)
+
+/// Calls visit.operator()<Request, Reply>("package/srv/Type") for each type of service.
+void for_each_service(auto&& visit) {
+  visit.template operator()<TriggerRequest, CommandReply>("std_srvs/srv/Trigger");
+  visit.template operator()<SetBoolRequest, CommandReply>("std_srvs/srv/SetBool");
+  visit.template operator()<CommandRequest, CommandReply>("rtd_msgs/srv/Command");
+  visit.template operator()<ListParametersRequest, ListParametersReply>("rcl_interfaces/srv/ListParameters");
+  visit.template operator()<ParameterNames, GetParametersReply>("rcl_interfaces/srv/GetParameters");
+  visit.template operator()<ParameterNames, GetParameterTypesReply>("rcl_interfaces/srv/GetParameterTypes");
+  visit.template operator()<ParameterNames, DescribeParametersReply>("rcl_interfaces/srv/DescribeParameters");
+  visit.template operator()<ParameterList, SetParametersReply>("rcl_interfaces/srv/SetParameters");
+  visit.template operator()<ParameterList, SetParametersAtomicallyReply>(
+      "rcl_interfaces/srv/SetParametersAtomically");
+}
 
 }  // namespace rtd::msg

@@ -114,6 +114,8 @@ inline constexpr FieldRule kFieldRules[] = {
     between("diagnostic_msgs/DiagnosticStatus.level", 0, 3),
     text_field("diagnostic_msgs/*", TextRule::kLines, 65'536),
     free_field("std_srvs/Trigger_Request.structure_needs_at_least_one_member"),
+    free_field("rcl_interfaces/*"),
+    free_field("rmw_dds_common/*"),
     // ours
     text_field("rtd_msgs/WireSchema.text", TextRule::kLines, 1 << 20),
     text_field("rtd_msgs/Command_Request.argument", TextRule::kLine, 4096),

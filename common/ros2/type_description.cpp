@@ -7,11 +7,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <set>
 #include <sstream>
+#include <string_view>
 
+#include "common/msg/commands.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/message_list.hpp"
+#include "common/msg/parameters.hpp"
+#include "common/msg/ros_graph.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 
@@ -23,6 +28,30 @@ std::string word_of() {
   if constexpr (std::is_same_v<Number, bool>) return "bool";
   const std::string kind = std::is_floating_point_v<Number> ? "float" : std::is_signed_v<Number> ? "int" : "uint";
   return kind + std::to_string(8 * sizeof(Number));
+}
+
+/// What definitions of ROS 2 say beyond the C++ type of a field: another word for the same bytes, bounds.
+struct Refinement {
+  const char *type, *field, *word = nullptr;
+  std::uint32_t capacity = 0, text_capacity = 0;
+};
+constexpr Refinement kRefinements[] = {
+    {"diagnostic_msgs/DiagnosticStatus", "level", "byte"},
+    {"rcl_interfaces/ParameterValue", "byte_array_value", "byte"},
+    {"rcl_interfaces/ParameterValue", "bool_array_value", "bool"},
+    {"rcl_interfaces/ParameterDescriptor", "floating_point_range", nullptr, 1},
+    {"rcl_interfaces/ParameterDescriptor", "integer_range", nullptr, 1},
+    {"rmw_dds_common/NodeEntitiesInfo", "node_namespace", nullptr, 0, 256},
+    {"rmw_dds_common/NodeEntitiesInfo", "node_name", nullptr, 0, 256},
+};
+
+void refine(const std::string& type, MessageField& field) {
+  for (const Refinement& more : kRefinements) {
+    if (type != more.type || field.name != more.field) continue;
+    if (more.word != nullptr) field.type = more.word;
+    if (more.capacity > 0) field.capacity = more.capacity;
+    field.text_capacity = more.text_capacity;
+  }
 }
 
 /// Collects types from the lists of fields of their structs.
@@ -37,8 +66,8 @@ class Collector {
       MessageField& field = fields.emplace_back();
       field.name = name;
       describe(field, msg::TypeOf<Field>());
+      refine(type, field);
     });
-    if (type == "diagnostic_msgs/DiagnosticStatus") fields.front().type = "byte";  // on the wire a uint8
     types_[type] = std::move(fields);
   }
   MessageFields take() { return std::move(types_); }
@@ -101,8 +130,14 @@ std::string type_text(const MessageField& field, const std::string& package) {
   const bool ambiguous = field.type == "vision_msgs/Pose2D" || field.type == "vision_msgs/Point2D";
   const bool local = field.type.starts_with(package + '/') && !ambiguous;
   const std::string type = local ? field.type.substr(package.size() + 1) : field.type;
-  if (field.kind == MessageField::Kind::kSequence) return type + "[]";
+  if (field.kind == MessageField::Kind::kSequence) return type + "[]";  // none of those in texts has a bound
   return field.kind == MessageField::Kind::kOne ? type : type + '[' + std::to_string(field.capacity) + ']';
+}
+
+/// Names of fields have small letters in ROS 2: T_world_camera is t_world_camera there.
+std::string ros_field(std::string name) {
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name;
 }
 
 /// The .msg file of a type.
@@ -110,7 +145,7 @@ std::string msg_text(const std::string& type, const MessageFields& types) {
   const std::string package = type.substr(0, type.find('/'));
   std::string text = constants_of(type);
   for (const MessageField& field : types.at(type)) {
-    text += type_text(field, package) + ' ' + field.name + default_of(type, field) + '\n';
+    text += type_text(field, package) + ' ' + ros_field(field.name) + default_of(type, field) + '\n';
   }
   return text;
 }
@@ -144,21 +179,25 @@ int type_id(const MessageField& field) {
   static const std::map<std::string, int> kPrimitive = {
       {"int8", 2},   {"uint8", 3},    {"int16", 4},    {"uint16", 5}, {"int32", 6}, {"uint32", 7}, {"int64", 8},
       {"uint64", 9}, {"float32", 10}, {"float64", 11}, {"bool", 15},  {"byte", 16}, {"string", 17}};
-  constexpr int kMessage = 1;
-  constexpr int kOffset[] = {0, 48, 144};  // by MessageField::Kind
-  return (field.is_message() ? kMessage : kPrimitive.at(field.type)) + kOffset[static_cast<int>(field.kind)];
+  constexpr int kMessage = 1, kBoundedString = 21;
+  constexpr int kOffset[] = {0, 48, 144}, kBoundedSequence = 96;  // by MessageField::Kind
+  const bool bounded = field.kind == MessageField::Kind::kSequence && field.capacity > 0;
+  const int one = field.is_message() ? kMessage : field.text_capacity > 0 ? kBoundedString : kPrimitive.at(field.type);
+  return one + (bounded ? kBoundedSequence : kOffset[static_cast<int>(field.kind)]);
 }
 
-/// "package/Type" as descriptions name it.
+/// "package/Type" as descriptions name it; what belongs to a service has its middle part already.
 std::string full_name(const std::string& type) {
   const std::size_t slash = type.find('/');
+  if (type.find('/', slash + 1) != std::string::npos) return type;
   return type.substr(0, slash) + "/msg" + type.substr(slash);
 }
 
 std::string describe(const MessageField& field) {
   return fmt::format(
-      R"({{"name": "{}", "type": {{"type_id": {}, "capacity": {}, "string_capacity": 0, "nested_type_name": "{}"}}}})",
-      field.name, type_id(field), field.capacity, field.is_message() ? full_name(field.type) : "");
+      R"({{"name": "{}", "type": {{"type_id": {}, "capacity": {}, "string_capacity": {}, "nested_type_name": "{}"}}}})",
+      ros_field(field.name), type_id(field), field.capacity, field.text_capacity,
+      field.is_message() ? full_name(field.type) : "");
 }
 
 std::string describe(const std::string& type, const MessageFields& types) {
@@ -183,6 +222,53 @@ std::string description(const std::string& type, const MessageFields& types) {
   for (const std::string& part : parts) referenced += (referenced.empty() ? "" : ", ") + describe(part, types);
   return fmt::format(R"({{"type_description": {}, "referenced_type_descriptions": [{}]}})", describe(type, types),
                      referenced);
+}
+
+/// The types of a service as ROS 2 describes it: the service itself, its request, its response, and the event that
+/// says who asked what.
+template <class Request, class Response>
+MessageFields service_fields(const std::string& service) {
+  constexpr auto kArray = MessageField::Kind::kArray, kSequence = MessageField::Kind::kSequence;
+  Collector collector;
+  collector.add<Request>();
+  collector.add<Response>();
+  collector.add<msg::Time>();
+  MessageFields types = collector.take();
+  const std::string request = service + "_Request", response = service + "_Response", event = service + "_Event";
+  types[request] = types.at(msg::type_name(msg::TypeOf<Request>()));
+  types[response] = types.at(msg::type_name(msg::TypeOf<Response>()));
+  types["service_msgs/ServiceEventInfo"] = {{"uint8", "event_type"},
+                                            {"builtin_interfaces/Time", "stamp"},
+                                            {"uint8", "client_gid", kArray, 16},
+                                            {"int64", "sequence_number"}};
+  types[event] = {{"service_msgs/ServiceEventInfo", "info"},
+                  {request, "request", kSequence, 1},
+                  {response, "response", kSequence, 1}};
+  types[service] = {{request, "request_message"}, {response, "response_message"}, {event, "event_message"}};
+  return types;
+}
+
+/// Hashes of what the bus carries beside messages, by "package/Type" and "package/srv/Type". A service has one for its
+/// request and its reply.
+std::map<std::string, std::string> other_hashes() {
+  std::map<std::string, std::string> hashes;
+  msg::for_each_service([&]<class Request, class Response>(const char* service) {
+    hashes[service] = type_hash(service, service_fields<Request, Response>(service));
+  });
+  Collector graph;
+  graph.add<msg::ParticipantEntitiesInfo<16>>();
+  const std::string info = msg::type_name(msg::TypeOf<msg::ParticipantEntitiesInfo<16>>());
+  hashes[info] = type_hash(info, graph.take());
+  return hashes;
+}
+
+/// "std_srvs/srv/Trigger" of "std_srvs::srv::dds_::Trigger_Request_" and of its response; "" for other types.
+std::string service_of(const std::string& dds_type) {
+  const std::string type = ros_type(dds_type);
+  for (const std::string_view part : {"_Request", "_Response"}) {
+    if (type.ends_with(part) && type.find("/srv/") != std::string::npos) return type.substr(0, type.size() - part.size());
+  }
+  return {};
 }
 
 }  // namespace
@@ -213,6 +299,19 @@ std::string ros2msg_text(const std::string& type, const MessageFields& types) {
   return text;
 }
 
+std::string msg_file(const std::string& type) {
+  const std::string wanted = "struct " + type.substr(type.find('/') + 1) + "_ {";
+  std::string comment;
+  std::istringstream lines(own_idl());
+  for (std::string line; std::getline(lines, line) && line != wanted;) {
+    if (line.starts_with("// ")) comment += "# " + line.substr(3) + '\n';
+    if (line.empty()) comment.clear();
+  }
+  const std::string license =
+      "# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors\n# SPDX-License-Identifier: Apache-2.0\n";
+  return license + (comment.empty() ? "" : "#\n" + comment) + '\n' + msg_text(type, message_fields());
+}
+
 std::string type_hash(const std::string& type, const MessageFields& types) {
   const std::string text = description(type, types);
   unsigned char digest[SHA256_DIGEST_LENGTH];
@@ -223,14 +322,16 @@ std::string type_hash(const std::string& type, const MessageFields& types) {
 }
 
 std::string type_hash(const std::string& dds_type) {
+  static const std::map<std::string, std::string> kOthers = other_hashes();
   const std::string type = short_type(dds_type);
-  const bool known = fields_of(type) != nullptr && !type.starts_with("rtd_msgs/");
-  return known ? type_hash(type, message_fields()) : std::string();
+  if (fields_of(type) != nullptr) return type_hash(type, message_fields());
+  const auto other = kOthers.find(type.empty() ? service_of(dds_type) : type);
+  return other == kOthers.end() ? std::string() : other->second;
 }
 
 std::string user_data_of(const std::string& dds_type) {
   const std::string hash = type_hash(dds_type);
-  return hash.empty() ? std::string() : kKey + hash + ';';
+  return hash.empty() ? "from=rtd;" : kKey + hash + ';';
 }
 
 std::string hash_in(const std::string& user_data) {

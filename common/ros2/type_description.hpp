@@ -33,19 +33,24 @@ TypeDefinition definition_of(const std::string& dds_type);
 /// The text of "package/Type" in the encoding "ros2msg" by its fields and those of all that it is made of.
 std::string ros2msg_text(const std::string& type, const MessageFields& types);
 
+/// The file Type.msg of a type of our own ("rtd_msgs/Type") in idl/ros2/rtd_msgs/msg: its fields below what
+/// idl/rtd_msgs.idl says of it.
+std::string msg_file(const std::string& type);
+
 /// The text of idl/rtd_msgs.idl.
 const std::string& own_idl();
 
 /// The hash by which ROS 2, from Iron on, checks that two programs mean the same type by one name: SHA-256 of
 /// its description as JSON (REP-2011, REP-2016). Writers and readers announce it in the USER_DATA of their discovery.
-/// "RIHS01_<64 hexadecimal digits>"; empty for a type that is unknown or our own.
+/// "RIHS01_<64 hexadecimal digits>"; empty for an unknown type. Requests and replies have that of their service, as
+/// both RMWs announce it.
 std::string type_hash(const std::string& dds_type);
 
 /// The same for "package/Type" from its fields and those of all that it is made of. Throws std::out_of_range when one
 /// is missing.
 std::string type_hash(const std::string& type, const MessageFields& types);
 
-/// The USER_DATA of an endpoint of that type: "typehash=RIHS01_...;", or empty.
+/// The USER_DATA of an endpoint of that type: "typehash=RIHS01_...;". Never empty: ROS 2 warns of an endpoint without.
 std::string user_data_of(const std::string& dds_type);
 
 /// The hash in the USER_DATA of an endpoint, or empty.

@@ -16,7 +16,8 @@ struct MessageField {
   std::string type;  ///< "float64", "string", "time", or a message: "geometry_msgs/Pose"
   std::string name;
   Kind kind = Kind::kOne;
-  std::uint32_t capacity = 0;  ///< of an array
+  std::uint32_t capacity = 0;       ///< of an array; of a sequence: its bound, 0 without one
+  std::uint32_t text_capacity = 0;  ///< bound of a string, 0 without one
   bool is_message() const { return type.find('/') != std::string::npos; }
 };
 

@@ -97,6 +97,24 @@ TEST(TypeDefinitions, texts_and_hashes_are_the_recorded_ones) {
   for (const auto& [type, fields] : message_fields()) EXPECT_TRUE(compared.contains(dds_name(type))) << type;
 }
 
+/// idl/ros2/rtd_msgs, from which a workspace of ROS 2 makes the types that we announce by their hashes.
+TEST(TypeDefinitions, the_package_of_ros2_has_each_type_of_ours) {
+  const std::filesystem::path folder = std::filesystem::path(IDL_FOLDER) / "ros2/rtd_msgs/msg";
+  std::set<std::string> missing;
+  for (const auto& [type, fields] : message_fields()) {
+    if (type.starts_with("rtd_msgs/")) missing.insert(type.substr(type.find('/') + 1) + ".msg");
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    ASSERT_EQ(missing.erase(name), 1U) << name << " is no message of ours";
+    const std::string text = text_of(entry.path()), type = "rtd_msgs/" + entry.path().stem().string();
+    EXPECT_EQ(text, msg_file(type)) << name << " is to be this text";
+    const MessageFields read = ros::parse_definition(type, ros2msg_text(type, message_fields()));
+    EXPECT_EQ(type_hash(type, read), type_hash(type, message_fields())) << "the hash that ROS 2 computes of the file";
+  }
+  EXPECT_TRUE(missing.empty()) << *missing.begin() << " is missing";
+}
+
 TEST(TypeDefinitions, are_complete) {
   const TypeDefinition odometry = definition_of("nav_msgs::msg::dds_::Odometry_");
   EXPECT_EQ(odometry.name, "nav_msgs/msg/Odometry");

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "common/ros2/type_description.hpp"
+#include "tests/support/rmw_user_data.hpp"
 
 namespace rtd::ros2 {
 namespace {
@@ -61,10 +62,38 @@ TEST(TypeHash, knows_every_primitive_and_kind_of_field) {
   EXPECT_THROW(type_hash("a/All", types), std::out_of_range);
 }
 
-TEST(TypeHash, exists_for_types_of_ros2_only) {
-  for (const char* type : {"rtd_msgs::msg::dds_::RgbdFrame_", "unknown_msgs::msg::dds_::Thing_", "KeyedSeq", ""}) {
+TEST(TypeHash, of_a_service_is_that_of_both_its_messages) {
+  for (const char* part : {"_Request_", "_Response_"}) {
+    const auto hash = [&](const std::string& service) { return type_hash(service + part); };
+    EXPECT_EQ(hash("std_srvs::srv::dds_::Trigger"),
+              "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f");
+    EXPECT_EQ(hash("std_srvs::srv::dds_::SetBool"),
+              "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a");
+    EXPECT_EQ(hash("rcl_interfaces::srv::dds_::ListParameters"),
+              "RIHS01_3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d");
+    EXPECT_EQ(hash("rcl_interfaces::srv::dds_::DescribeParameters"),
+              "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff");
+  }
+  EXPECT_EQ(type_hash("rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_"),
+            "RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e");
+}
+
+TEST(TypeHash, exists_for_our_own_types_too) {
+  for (const auto& [type, fields] : message_fields()) {
+    const std::size_t slash = type.find('/');
+    const std::string dds = type.substr(0, slash) + "::msg::dds_::" + type.substr(slash + 1) + '_';
+    EXPECT_EQ(type_hash(dds).size(), 7U + 64U) << type;
+  }
+  EXPECT_EQ(type_hash("rtd_msgs::srv::dds_::Command_Request_").size(), 7U + 64U);
+  // Fields of ROS 2 have small letters.
+  EXPECT_EQ(type_hash("a/B", {{"a/B", {{"int16", "T_world_camera"}}}}),
+            type_hash("a/B", {{"a/B", {{"int16", "t_world_camera"}}}}));
+}
+
+TEST(TypeHash, of_an_unknown_type_is_none_but_its_endpoints_announce_something) {
+  for (const char* type : {"unknown_msgs::msg::dds_::Thing_", "unknown_srvs::srv::dds_::Thing_Request_", "KeyedSeq", ""}) {
     EXPECT_EQ(type_hash(type), "") << type;
-    EXPECT_EQ(user_data_of(type), "") << type;
+    EXPECT_EQ(rtd::testing::parse_user_data(user_data_of(type)), rtd::testing::UserData::kNoHash) << type;
   }
 }
 
@@ -76,6 +105,16 @@ TEST(TypeHash, goes_into_user_data_and_is_found_in_that_of_others) {
   EXPECT_EQ(hash_in("typehash=" + hash), hash);
   EXPECT_EQ(hash_in("mytypehash=" + hash + ";"), "");
   EXPECT_EQ(hash_in(""), "");
+}
+
+TEST(TypeHash, is_read_by_a_parser_as_rmw_cyclonedds_has_it) {
+  using rtd::testing::parse_user_data;
+  using rtd::testing::UserData;
+  EXPECT_EQ(parse_user_data(user_data_of("nav_msgs::msg::dds_::Odometry_")), UserData::kHash);
+  EXPECT_EQ(parse_user_data(""), UserData::kWarning) << "an endpoint without USER_DATA";
+  EXPECT_EQ(parse_user_data("typehash=RIHS01_12;"), UserData::kWarning);
+  EXPECT_EQ(parse_user_data("serviceid=01.02;"), UserData::kNoHash);
+  EXPECT_EQ(parse_user_data("not a list"), UserData::kNoHash);
 }
 
 TEST(MessageFields, have_kinds_and_words_of_ros2) {
