@@ -6,7 +6,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ctime>
 #include <opencv2/core/utility.hpp>
+#include <utility>
 
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/stamps.hpp"
@@ -104,6 +106,7 @@ service::ExitCode FilterService::run() {
     report_state();
     commands_->serve();
     std::optional<Work> work = next_frame();
+    notice_standstill();
     watch_detector();
     if (work && accept(work->arrival)) process(std::move(*work));
   }
@@ -288,6 +291,16 @@ const service::LoadStep& FilterService::follow_load_step() {
   filter_.set_effort({step.feature_share, step.coarse_depth_check, step.first_octave});
   runtime_.heartbeat.set_metric(service::metric::kLoadStep, load_.step());
   return step;
+}
+
+/// Since the last frame, or look for one.
+void FilterService::notice_standstill() {
+  constexpr std::int64_t kStandstillNs = 250'000'000;  // even beside many busy processes a thread runs in that time
+  timespec used{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
+  const std::int64_t now_ns = service::monotonic_ns(), ran_ns = used.tv_sec * 1'000'000'000 + used.tv_nsec;
+  const std::int64_t away_ns = now_ns - std::exchange(looked_ns_, now_ns) - (ran_ns - std::exchange(ran_ns_, ran_ns));
+  if (away_ns > kStandstillNs) load_.stood_still(now_ns);
 }
 
 void FilterService::watch_load(const msg::TrackingResult& result) {

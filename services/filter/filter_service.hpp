@@ -70,6 +70,7 @@ class FilterService {
   int first_load_step() const;
   bool sheds_load() const;
   const service::LoadStep& follow_load_step();
+  void notice_standstill();
   void watch_load(const msg::TrackingResult& result);
   bool accept(const Arrival& arrival);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);
@@ -99,6 +100,7 @@ class FilterService {
   std::shared_ptr<Frames> frames_;
   std::shared_ptr<Prepared> prepared_ = std::make_shared<Prepared>(1, concurrency::Overflow::kBlock);
   LoadWatch load_;
+  std::int64_t looked_ns_ = 0, ran_ns_ = 0;  ///< of notice_standstill(): when, and processor time until then
   std::shared_ptr<DetectionInbox> detections_ = std::make_shared<DetectionInbox>();
   std::shared_ptr<SlamFeedback> feedback_ = std::make_shared<SlamFeedback>();
   std::optional<inertial::MotionFeed> imu_;

@@ -60,6 +60,9 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
     EXPECT_GT(json["cpu_s"][process], 0.0) << process;
     EXPECT_GT(json["peak_rss_mb"][process], 1.0) << process;
   }
+  double services_mb = -json["peak_rss_mb"]["launcher"].get<double>();
+  for (const auto& [process, peak_mb] : json["peak_rss_mb"].items()) services_mb += peak_mb.get<double>();
+  EXPECT_LT(services_mb, test_support::kSanitized ? 3000 : 330) << "287 MB with detector when this was written";
   EXPECT_EQ(json["frames_in"], 30);
   EXPECT_EQ(json["frames_dropped"], 0);
   EXPECT_GE(json["coverage"], 0.96);

@@ -66,6 +66,12 @@ TEST_F(SupervisedRunTest, gives_every_service_its_arguments_and_a_log) {
   EXPECT_FALSE(fs::exists(scratch_ / "out/logs/detector.log")) << "geometry needs no detector";
 }
 
+TEST_F(SupervisedRunTest, looks_for_no_other_run_where_no_process_is_in_the_domain) {
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(rtd_.run(arguments({"--domain", "79", "--set", "launcher.domain_check_ms=10000"})), 1);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(9));
+}
+
 TEST_F(SupervisedRunTest, a_run_without_a_pose_fails_and_says_so) {
   EXPECT_EQ(rtd_.run(arguments()), 1);
   EXPECT_THAT(rtd_.output(), HasSubstr("no frame got a pose"));

@@ -3,6 +3,7 @@
 #include "services/filter/core/load/load_watch.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace rtd::filter {
 namespace {
@@ -11,7 +12,17 @@ constexpr double kSmoothing = 0.1;
 
 }  // namespace
 
+void LoadWatch::stood_still(std::int64_t now_ns) {
+  constexpr std::int64_t kRareNs = 1'000'000'000;
+  if (now_ns - std::exchange(stood_still_ns_, now_ns) < kRareNs) return;
+  excused_ns_ = now_ns + static_cast<std::int64_t>(1e9 * limits_.settle_s);
+}
+
 bool LoadWatch::add(std::uint64_t seq, double latency_ms, std::int64_t now_ns) {
+  if (now_ns - static_cast<std::int64_t>(1e6 * latency_ms) < excused_ns_) {
+    last_seq_ = seq;
+    return false;
+  }
   const std::uint64_t missing = last_seq_ && seq > *last_seq_ ? seq - *last_seq_ - 1 : 0;
   const bool paused = !last_seq_ || seq <= *last_seq_ || missing > static_cast<std::uint64_t>(limits_.window);
   last_seq_ = seq;

@@ -30,6 +30,9 @@ class LoadWatch {
   /// A pose has come back. Frames that are missing between two poses count as burdened; a gap that is longer than the
   /// window is a pause, not a burden. True when step() has changed.
   bool add(std::uint64_t seq, double latency_ms, std::int64_t now_ns);
+  /// Nothing ran for a while until now: less work would not have helped, so what is late or missing because of it is no
+  /// burden. Where that happens more than once a second, it is.
+  void stood_still(std::int64_t now_ns);
   /// 0 = nothing is shed.
   int step() const { return step_; }
   /// Of the window that led to the last change.
@@ -49,6 +52,8 @@ class LoadWatch {
   double smooth_latency_ms_ = 0;
   std::int64_t calm_since_ns_ = 0;
   std::int64_t settled_ns_ = 0;  ///< before it nothing more is shed
+  std::int64_t stood_still_ns_ = 0;
+  std::int64_t excused_ns_ = 0;  ///< frames that were published before it do not count
   std::int64_t taken_back_ns_ = 0;
   double calm_s_ = limits_.calm_s;  ///< how long it must be calm now
 };

@@ -81,6 +81,32 @@ TEST_F(LoadWatchTest, a_pause_of_the_camera_and_numbers_that_begin_again_are_no_
   EXPECT_EQ(watch_.step(), 0);
 }
 
+TEST_F(LoadWatchTest, what_is_late_because_nothing_ran_is_no_burden) {
+  const auto stand_still = [this] {
+    lose(8);
+    watch_.stood_still(now_ns_);
+    return add(3, kLate);
+  };
+  add(20, kEasy);
+  add(2, kLate);
+  ASSERT_EQ(watch_.step(), 1);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_FALSE(stand_still());
+    add(60, kEasy);
+  }
+  EXPECT_EQ(watch_.step(), 0) << "taken back meanwhile";
+}
+
+TEST_F(LoadWatchTest, a_computer_on_which_nothing_runs_again_and_again_is_overloaded) {
+  add(20, kEasy);
+  for (int i = 0; i < 10; ++i) {
+    lose(8);
+    watch_.stood_still(now_ns_);
+    add(2, kLate);
+  }
+  EXPECT_GT(watch_.step(), 0);
+}
+
 TEST_F(LoadWatchTest, takes_back_after_a_calm_time_and_waits_longer_where_that_was_too_early) {
   add(2, kEasy);
   add(2, kLate);
