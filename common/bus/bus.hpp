@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/command_book.hpp"
 #include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
 
@@ -151,6 +152,9 @@ class Bus {
     return backend_->create_calls(topics, role, std::move(on_call));
   }
 
+  /// What CommandServers on this connection offer.
+  const std::shared_ptr<CommandBook>& commands() const { return commands_; }
+
   const std::string& vendor() const { return backend_->vendor(); }
   /// Whose topics writers and readers get; "" for a robot without a name.
   const std::string& robot() const { return robot_; }
@@ -164,6 +168,7 @@ class Bus {
  private:
   TopicCounters counters_;
   std::shared_ptr<BusBackend> backend_;
+  const std::shared_ptr<CommandBook> commands_ = std::make_shared<CommandBook>();
   const std::string robot_;
 };
 

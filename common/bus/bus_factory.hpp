@@ -55,6 +55,8 @@ struct EnvironmentSetting {
 
 /// bus.shm_segment_mib of a process that sends neither images nor clouds.
 inline constexpr std::uint32_t kSmallSegmentMib = 4;
+/// How our nodes are announced to ROS 2: identities have another size up to Humble than from Iron on.
+enum class RosGraph { kOff, kHumble, kIron };
 
 /// How a process joins the bus. Defaults: Fast DDS, loopback only.
 struct BusOptions {
@@ -65,6 +67,7 @@ struct BusOptions {
   bool shared_memory = true;     ///< false where /dev/shm is tiny
   std::uint32_t shm_segment_mib = 16;
   std::uint32_t socket_buffer_kib = 4096;
+  std::string ros_graph = "auto";  ///< auto counts as iron; common/service asks ROS_DISTRO before
   NetworkOptions network;
   SecurityOptions security;
   bool iceoryx = false;
@@ -81,10 +84,14 @@ struct BusOptions {
     binder.field("shared_memory", shared_memory, "false: Fast DDS sends over UDP on one host too");
     binder.field("shm_segment_mib", shm_segment_mib, {2, 1024}, "shared-memory segment of this process");
     binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
+    binder.choice("ros_graph", ros_graph, {"auto", "iron", "humble", "off"},
+                  "form of the nodes for ROS 2: Iron and later, or up to Humble; auto: by ROS_DISTRO, else iron");
     binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
     binder.section("network", network);
   }
 };
+
+RosGraph ros_graph_of(const BusOptions& options);
 
 /// Connects to the bus. Throws BusError: unknown vendor (with the list of those built in), domain out of range,
 /// /dev/shm too small (with size and fix), participant refused.

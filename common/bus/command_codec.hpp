@@ -8,13 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "common/bus/call_server.hpp"
 #include "common/bus/commands.hpp"
 
 /// Commands on the wire: names of topics and types as ROS 2 forms them, requests and replies as XCDR1.
 namespace rtd::bus {
-
-/// A longer request is refused.
-inline constexpr std::size_t kMaxRequestBytes = 64 * 1024;
 
 /// `full_name` without a slash before it: "slam/reset", "anna/slam/reset".
 CallTopics call_topics(const std::string& full_name, CommandKind kind);

@@ -1,23 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
 #include <exception>
-#include <thread>
 #include <utility>
 
 #include "common/bus/command_codec.hpp"
 #include "common/bus/commands.hpp"
 #include "common/bus/robot.hpp"
-#include "common/concurrency/bounded_queue.hpp"
 
 namespace rtd::bus {
 namespace {
 
-using namespace std::chrono_literals;
-
-constexpr std::size_t kMaxWaiting = 16;
-/// A client that has just appeared may not receive replies yet: its two endpoints are found one after the other.
-constexpr auto kClientPatience = 500ms;
+constexpr char kEnding[] = "the service is ending";
 
 CallTopics topics_of(const Bus& bus, const std::string& name, CommandKind kind) {
   CallTopics topics = call_topics(name, kind);
@@ -31,64 +24,78 @@ CallTopics topics_of(const Bus& bus, const std::string& name, CommandKind kind) 
 class CommandServer::State {
  public:
   State(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
-      : kind_(kind),
-        handler_(std::move(handler)),
-        calls_(bus.calls(topics_of(bus, name, kind), CallRole::kServer,
-                         [this](const CallId& id, std::span<const std::byte> cdr) { enqueue(id, cdr); })),
-        thread_([this] { serve(); }) {}
-  ~State() {
-    waiting_.close();
-    thread_.join();
-  }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
+      : listed_(bus.commands(), name, std::move(handler)),
+        calls_(bus, {{topics_of(bus, name, kind), [this, kind](std::span<const std::byte> cdr) {
+                        return encode_answer(handle(kind, cdr));
+                      }}}) {}
 
  private:
-  struct Call {
-    CallId id;
-    std::vector<std::byte> cdr;
-    bool too_long = false;
+  struct Listed {
+    Listed(std::shared_ptr<CommandBook> commands, std::string command, Handler handler)
+        : book(std::move(commands)), name(std::move(command)) {
+      book->add(name, std::move(handler));
+    }
+    ~Listed() { book->remove(name); }
+    Listed(const Listed&) = delete;
+    Listed& operator=(const Listed&) = delete;
+
+    const std::shared_ptr<CommandBook> book;
+    const std::string name;
   };
 
-  void enqueue(const CallId& id, std::span<const std::byte> cdr) {
-    const bool too_long = cdr.size() > kMaxRequestBytes;
-    const std::size_t kept = too_long ? 0 : cdr.size();
-    waiting_.push({id, std::vector<std::byte>(cdr.begin(), cdr.begin() + static_cast<std::ptrdiff_t>(kept)), too_long});
-  }
-  void serve() {
-    while (const auto call = waiting_.pop()) {
-      if (waiting_.closed()) return;
-      const CommandAnswer answer = handle(*call);
-      wait_for_client();
-      calls_->reply(call->id, encode_answer(answer));
-    }
-  }
-  CommandAnswer handle(const Call& call) const {
-    if (call.too_long) return {false, "a request has at most " + std::to_string(kMaxRequestBytes) + " bytes"};
+  CommandAnswer handle(CommandKind kind, std::span<const std::byte> cdr) const {
+    if (cdr.size() > kMaxRequestBytes)
+      return {false, "a request has at most " + std::to_string(kMaxRequestBytes) + " bytes"};
     try {
-      return handler_(decode_request(kind_, call.cdr));
+      return listed_.book->call(listed_.name, decode_request(kind, cdr)).value_or(CommandAnswer{false, kEnding});
     } catch (const std::exception& error) {
       return {false, error.what()};
     }
   }
-  void wait_for_client() const {
-    const auto end = std::chrono::steady_clock::now() + kClientPatience;
-    while (calls_->matched_readers() < calls_->matched_writers() && !waiting_.closed() &&
-           std::chrono::steady_clock::now() < end) {
-      std::this_thread::sleep_for(2ms);
-    }
-  }
 
-  const CommandKind kind_;
-  const Handler handler_;
-  concurrency::BoundedQueue<Call> waiting_{kMaxWaiting, concurrency::Overflow::kDropOldest};
-  std::unique_ptr<CallEndpoint> calls_;
-  std::thread thread_;
+  const Listed listed_;
+  CallServer calls_;  // last: it uses the other
 };
 
 CommandServer::CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
     : state_(std::make_unique<State>(bus, name, kind, std::move(handler))) {}
 CommandServer::~CommandServer() = default;
+
+void CommandBook::add(const std::string& name, CommandHandler handler) {
+  auto entry = std::make_shared<Entry>();
+  entry->handler = std::move(handler);
+  const std::lock_guard lock(mutex_);
+  entries_[name] = std::move(entry);
+}
+
+void CommandBook::remove(const std::string& name) {
+  std::shared_ptr<Entry> entry;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto node = entries_.extract(name);
+    if (node.empty()) return;
+    entry = node.mapped();
+  }
+  const std::lock_guard running(entry->mutex);
+  entry->handler = nullptr;
+}
+
+std::optional<CommandAnswer> CommandBook::call(const std::string& name, const CommandRequest& request) {
+  std::shared_ptr<Entry> entry;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(name);
+    if (found == entries_.end()) return std::nullopt;
+    entry = found->second;
+  }
+  const std::lock_guard running(entry->mutex);
+  if (!entry->handler) return std::nullopt;
+  try {
+    return entry->handler(request);
+  } catch (const std::exception& error) {
+    return CommandAnswer{false, error.what()};
+  }
+}
 
 void CommandDesk::offer(const std::string& name, CommandKind kind, CommandServer::Handler handler) {
   offer_beside(name, kind, [this, handler = std::move(handler)](const CommandRequest& request) {
@@ -125,14 +132,14 @@ CommandAnswer CommandDesk::run(std::function<CommandAnswer()> work) {
   std::future<CommandAnswer> answer = task.get_future();
   {
     const std::lock_guard lock(mutex_);
-    if (closed_) return {false, "the service is ending"};
+    if (closed_) return {false, kEnding};
     tasks_.push_back(std::move(task));
   }
   if (wake_) wake_();
   try {
     return answer.get();
   } catch (const std::future_error&) {
-    return {false, "the service is ending"};
+    return {false, kEnding};
   }
 }
 

@@ -13,19 +13,10 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/command_book.hpp"
 
 /// Commands to a running service, over DDS as ROS 2 services: `ros2 service call` and `rtd call` do the same.
 namespace rtd::bus {
-
-/// What the caller asks for.
-struct CommandRequest {
-  std::string argument;  ///< "" for a trigger, "true" or "false" for a switch, any text for kText
-};
-
-struct CommandAnswer {
-  bool success = false;
-  std::string message;  ///< what happened, or cause and fix
-};
 
 /// The type of the ROS 2 service.
 enum class CommandKind {
@@ -37,12 +28,12 @@ enum class CommandKind {
 /// "std_srvs/srv/Trigger", ...
 std::string ros_type(CommandKind kind);
 
-/// Offers one command while it lives. Requests wait in a bounded queue (the oldest goes and gets no answer) for a
+/// Offers one command while it lives, also to the process itself (Bus::commands()). Requests wait in a bounded queue (the oldest goes and gets no answer) for a
 /// thread of this server, on which the handler runs, one call at a time. What the handler throws, and a request that
 /// cannot be read, becomes an answer without success.
 class CommandServer {
  public:
-  using Handler = std::function<CommandAnswer(const CommandRequest&)>;
+  using Handler = CommandHandler;
 
   /// `name`: "slam/reset", below the name of the bus's robot if it has one. Throws BusError: refused.
   CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler);

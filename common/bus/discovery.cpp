@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/bus/robot.hpp"
 #include "common/io/printable.hpp"
 
 namespace rtd::bus {
@@ -86,6 +87,7 @@ void EndpointRegistry::watch(RawBus::Watcher watcher) {
 
 void EndpointRegistry::note(const TopicWriter& writer) {
   if (!is_wire_name(writer.topic.name) || !is_wire_name(writer.topic.type)) return;
+  if (writer.own && writer.topic.name == kRosGraphTopic) return;  // that the connection itself is a node
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = writers_.try_emplace(writer.id, writer);
   if (is_new) return report(writer, WriterChange::kAppeared);

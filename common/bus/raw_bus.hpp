@@ -90,6 +90,7 @@ struct TopicReader {
   WriterId id{};
   RawTopic topic;
   bool own = false;  ///< belongs to this connection
+  std::string user_data;  ///< as that of a TopicWriter
 };
 
 enum class WriterChange { kAppeared, kChanged, kGone };
@@ -168,7 +169,8 @@ class RawBus : public CallBackend {
 
   explicit RawBus(std::string vendor) : vendor_(std::move(vendor)) {}
   const std::string& vendor() const { return vendor_; }
-  /// Writers known now. A writer is known before its first sample is delivered.
+  /// Writers known now, without the one that announces this connection to ROS 2. A writer is known before its first
+  /// sample is delivered.
   virtual std::vector<TopicWriter> writers() const = 0;
   /// Readers known now.
   virtual std::vector<TopicReader> readers() const = 0;

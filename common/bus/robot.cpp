@@ -65,8 +65,8 @@ std::string topic_of_robot(std::string_view topic, std::string_view robot) {
   return std::string(prefix).append(robot).append("/").append(topic.substr(prefix.size()));
 }
 
-bool is_service_topic(std::string_view wire_name) {
-  return wire_name.starts_with(kRequest) || wire_name.starts_with(kReply);
+bool is_internal_to_ros(std::string_view wire_name) {
+  return wire_name.starts_with(kRequest) || wire_name.starts_with(kReply) || wire_name == kRosGraphTopic;
 }
 
 std::string_view service_of_reply(std::string_view wire_name) {

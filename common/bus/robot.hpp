@@ -13,6 +13,9 @@ namespace rtd::bus {
 
 inline constexpr std::size_t kLongestRobotName = 32;
 
+/// Where ROS 2 programs announce their nodes (common/bus/ros_graph.hpp).
+inline constexpr std::string_view kRosGraphTopic = "ros_discovery_info";
+
 /// What ROS 2 takes as one part of a topic's name: letters, digits and single underscores, a letter first, at most
 /// kLongestRobotName. "" is no name.
 bool is_robot_name(std::string_view name);
@@ -30,8 +33,8 @@ struct RobotTopic {
   std::string topic;  ///< as in topics.hpp
   bool operator==(const RobotTopic&) const = default;
 };
-/// Whether a topic is one of the two of a ROS 2 service ("rq/...", "rr/...").
-bool is_service_topic(std::string_view wire_name);
+/// Whether a topic carries no data of a program: the two of a ROS 2 service ("rq/...", "rr/...") and the list of nodes.
+bool is_internal_to_ros(std::string_view wire_name);
 /// The service that answers on this topic: "anna/slam/reset" of "rr/anna/slam/resetReply"; "" for other topics.
 std::string_view service_of_reply(std::string_view wire_name);
 

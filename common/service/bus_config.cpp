@@ -6,6 +6,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -67,11 +69,19 @@ bus::SecurityOptions security_options(const SecurityConfig& config, const std::s
           config.enclave.empty() ? bus::enclave_of_robot(role, robot) : config.enclave};
 }
 
+/// As the ROS 2 has it that is set up in this shell.
+std::string ros_graph_of_environment() {
+  const std::string distribution = process_environment()("ROS_DISTRO").value_or("");
+  constexpr std::array kUpToHumble = {"foxy", "galactic", "humble"};
+  return std::ranges::count(kUpToHumble, distribution) > 0 ? "humble" : "iron";
+}
+
 }  // namespace
 
 bus::BusOptions to_bus_options(const BusConfig& config, const std::string& participant_name) {
   bus::BusOptions options = config.options;
   options.participant_name = participant_name;
+  if (options.ros_graph == "auto") options.ros_graph = ros_graph_of_environment();
   options.security = security_options(config.security, participant_name, options.robot);
   if (options.vendor != "inprocess") options.environment = follow_dds_environment(process_environment(), options);
   return options;

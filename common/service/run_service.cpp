@@ -29,6 +29,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/parameter_server.hpp"
 #include "common/service/patience.hpp"
 #include "common/service/service_lock.hpp"
 #include "common/service/standard_streams.hpp"
@@ -117,6 +118,16 @@ class BusProblems {
   int count_ = 0;
 };
 
+/// A service works without them.
+void offer_parameters(std::optional<ParameterServer>& server, bus::Bus& bus, const std::string& service,
+                      Heartbeat& heartbeat) {
+  try {
+    server.emplace(bus, service, heartbeat);
+  } catch (const bus::BusError& error) {
+    SPDLOG_WARN("event=no_parameters cause=\"{}\"", error.what());
+  }
+}
+
 /// rtd run warns once for all its services.
 void log_setting(const bus::EnvironmentSetting& setting) {
   SPDLOG_INFO("event=environment_{}followed setting=\"{}\"", setting.followed ? "" : "not_", setting.text);
@@ -155,6 +166,10 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     }
     const SystemdLink systemd([&heartbeat] { return heartbeat.work(); });
     Trace trace(process_environment()(kTraceVariable).value_or(""), definition.name);
+    std::optional<ParameterServer> parameters;
+    std::jthread offering;  // beside the work, too; of a service that several processes may be, none is the node
+    if (shared.empty() && !options.security.enabled())
+      offering = std::jthread([&] { offer_parameters(parameters, *bus, definition.name, heartbeat); });
     const auto bound_end = [&end](int exit_code) { end.begin(exit_code); };
     Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end, trace};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),

@@ -72,6 +72,11 @@ class Heartbeat {
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
+  /// What its heartbeats carry, without what it knows of others.
+  msg::ServiceStatus own_status() const {
+    const std::lock_guard lock(mutex_);
+    return own_;
+  }
   /// What its heartbeats carry as ServiceStatus::started_ns.
   std::int64_t started_ns() const { return started_ns_; }
 

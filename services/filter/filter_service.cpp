@@ -98,6 +98,7 @@ FilterService::~FilterService() {
 
 service::ExitCode FilterService::run() {
   if (runtime_.pace == service::Pace::kRealtime) preparing_ = std::thread([this] { prepare_frames(); });
+  runtime_.heartbeat.set_word(service::metric::kModePrefix, msg::name_of(filter_.mode()));
   commands_.emplace(runtime_.bus);
   commands_->offer("filter/set_mode", bus::CommandKind::kText,
                    [this](const bus::CommandRequest& asked) { return set_mode(asked.argument); });

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/io/text.hpp"
+#include "common/msg/replay_rates.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using Action = Request::Action;
 
 constexpr std::chrono::seconds kPatience{5};  // a step at pace lockstep waits for the answers of slam
-constexpr double kLowestRate = 0.01, kHighestRate = 1000;
 
 double to_s(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
@@ -80,9 +80,9 @@ bus::CommandAnswer ReplayCommands::seek(const std::string& argument) const {
 
 bus::CommandAnswer ReplayCommands::set_rate(const std::string& argument) const {
   const auto rate = io::parse_number(argument);
-  if (!rate || !std::isfinite(*rate) || *rate < kLowestRate || *rate > kHighestRate)
+  if (!rate || !std::isfinite(*rate) || *rate < msg::kLowestReplayRate || *rate > msg::kHighestReplayRate)
     return {false, fmt::format("'{}' is no speed: give a number from {:g} to {:g}, 1 = as recorded", argument,
-                               kLowestRate, kHighestRate)};
+                               msg::kLowestReplayRate, msg::kHighestReplayRate)};
   return ask({Action::kSetRate, 0, *rate}, "continues");
 }
 

@@ -125,6 +125,7 @@ void SlamService::forget_map() {
 }
 
 service::ExitCode SlamService::run() {
+  runtime_.heartbeat.set_metric(service::metric::kLocalizeOnly, slam_.localize_only() ? 1 : 0);
   commands_.emplace(
       runtime_.bus, config_.map, maps_folder(config_, service::state_folder(service::process_environment())), slam_,
       map_keeper_, [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });

@@ -41,7 +41,7 @@ std::vector<bus::TopicWriter> TopicsSession::writers() const {
   std::vector<bus::TopicWriter> writers = bus_->writers();
   std::erase_if(writers, [this](const bus::TopicWriter& writer) {
     const bool hidden = !options_.robot.empty() && !bus::concerns_robot(writer.topic.name, options_.robot);
-    return writer.own || hidden || bus::is_service_topic(writer.topic.name);
+    return writer.own || hidden || bus::is_internal_to_ros(writer.topic.name);
   });
   return writers;
 }

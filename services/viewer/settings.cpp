@@ -2,48 +2,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/viewer/settings.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
+#include <variant>
 
 #include "common/service/metric_names.hpp"
 #include "common/service/peer_clocks.hpp"
+#include "common/service/settings.hpp"
 
 namespace rtd::viewer {
 namespace {
 
-/// A setting: the metric that has its value, of a choice the prefix of its word, and the command that changes it.
-struct Setting {
-  const char *name, *service, *metric, *command;
-  enum class Form { kSwitch, kNumber, kChoice } form;
-};
-constexpr std::array kSettings = {
-    Setting{"slam.localize_only", "slam", service::metric::kLocalizeOnly, "/slam/localize_only",
-            Setting::Form::kSwitch},
-    Setting{"filter.mode", "filter", service::metric::kModePrefix, "/filter/set_mode", Setting::Form::kChoice},
-    Setting{"replay.paused", "replay", service::metric::kReplayPaused, "/replay/pause", Setting::Form::kSwitch},
-    Setting{"replay.speed", "replay", service::metric::kReplaySpeed, "/replay/speed", Setting::Form::kNumber},
-};
-
-/// Empty: the heartbeat does not say.
-std::optional<foxglove::ParameterValue> value_of(const Setting& setting, const msg::ServiceStatus& status) {
-  if (setting.form == Setting::Form::kChoice) {
-    const std::string word = msg::word_of(status, setting.metric);
-    return word.empty() ? std::nullopt : std::optional<foxglove::ParameterValue>(word);
-  }
-  const std::optional<double> metric = service::find_metric(status, setting.metric);
-  if (!metric) return std::nullopt;
-  return setting.form == Setting::Form::kSwitch ? foxglove::ParameterValue(*metric != 0) : *metric;
+foxglove::ParameterValue to_parameter(const service::SettingValue& value) {
+  return std::visit([](const auto& held) { return foxglove::ParameterValue(held); }, value);
 }
 
-std::optional<std::string> argument_of(Setting::Form form, const foxglove::ParameterValue& value) {
-  if (const auto* flag = std::get_if<bool>(&value); flag != nullptr && form == Setting::Form::kSwitch)
-    return *flag ? "true" : "false";
-  if (const auto* number = std::get_if<double>(&value); number != nullptr && form == Setting::Form::kNumber)
-    return fmt::format("{}", *number);
-  if (const auto* text = std::get_if<std::string>(&value); text != nullptr && form == Setting::Form::kChoice)
-    return *text;
+std::optional<std::string> argument_for(const service::Setting& setting, const foxglove::ParameterValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value)) return argument_of(setting, *flag);
+  if (const auto* number = std::get_if<double>(&value)) return argument_of(setting, *number);
+  if (const auto* text = std::get_if<std::string>(&value)) return argument_of(setting, *text);
   return std::nullopt;
 }
 
@@ -52,23 +28,23 @@ std::optional<std::string> argument_of(Setting::Form form, const foxglove::Param
 std::vector<foxglove::Parameter> settings_of(const std::string& robot,
                                              const std::vector<msg::ServiceStatus>& services) {
   std::vector<foxglove::Parameter> parameters;
-  for (const Setting& setting : kSettings) {
+  for (const service::Setting& setting : service::live_settings()) {
     const auto status = std::ranges::find(services, setting.service, &msg::ServiceStatus::service);
     if (status == services.end()) continue;
-    if (const auto value = value_of(setting, *status))
-      parameters.push_back({(robot.empty() ? "" : robot + '.') + setting.name, *value});
+    if (const auto value = value_in(*status, setting))
+      parameters.push_back({(robot.empty() ? "" : robot + '.') + setting.name, to_parameter(*value)});
   }
   return parameters;
 }
 
 std::optional<SettingCall> call_for(const foxglove::Parameter& parameter) {
-  for (const Setting& setting : kSettings) {
+  for (const service::Setting& setting : service::live_settings()) {
     if (!parameter.name.ends_with(setting.name)) continue;
     std::string robot = parameter.name.substr(0, parameter.name.size() - std::string_view(setting.name).size());
     if (!robot.empty() && robot.back() != '.') continue;
     if (!robot.empty()) robot = '/' + robot.substr(0, robot.size() - 1);
-    const auto argument = argument_of(setting.form, parameter.value);
-    return argument ? std::optional(SettingCall{robot + setting.command, *argument}) : std::nullopt;
+    const auto argument = argument_for(setting, parameter.value);
+    return argument ? std::optional(SettingCall{robot + '/' + setting.command, *argument}) : std::nullopt;
   }
   return std::nullopt;
 }

@@ -167,12 +167,12 @@ void TopicFeed::update_graph() {
     const std::string& topic = writer.topic.name;
     if (const std::string service(bus::service_of_reply(topic)); !service.empty()) {
       add_name(graph.services['/' + service], names.of(writer.id));
-    } else if (!bus::is_service_topic(topic)) {
+    } else if (!bus::is_internal_to_ros(topic)) {
       add_name(graph.published[ros2::ros_topic(topic)], names.of(writer.id));
     }
   }
   for (const bus::TopicReader& reader : bus_.readers()) {
-    if (!bus::is_service_topic(reader.topic.name))
+    if (!bus::is_internal_to_ros(reader.topic.name))
       add_name(graph.subscribed[ros2::ros_topic(reader.topic.name)], names.of(reader.id));
   }
   hub_.set_graph(std::move(graph));

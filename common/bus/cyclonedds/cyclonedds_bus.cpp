@@ -8,6 +8,7 @@
 #include "common/bus/cyclonedds/endpoints.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
 #include "common/bus/prefixed_calls.hpp"
+#include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -84,10 +85,18 @@ std::unique_ptr<CallEndpoint> create_calls_on(const std::shared_ptr<Participant>
       std::move(on_call));
 }
 
+NodeAnnouncer::CreateWriter writers_of(const std::shared_ptr<Participant>& participant) {
+  return [participant](const RawTopic& topic, const RawWriterOptions& options) {
+    return std::make_unique<RawCycloneWriter>(participant, topic, options, StatusCallbacks());
+  };
+}
+
 class CycloneBackend : public BusBackend {
  public:
   explicit CycloneBackend(const BusOptions& options)
-      : BusBackend("cyclonedds"), participant_(std::make_shared<Participant>(options)) {}
+      : BusBackend("cyclonedds"),
+        participant_(std::make_shared<Participant>(options)),
+        announcer_(participant_->node_endpoints(), participant_->id(), options, writers_of(participant_)) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
@@ -106,6 +115,7 @@ class CycloneBackend : public BusBackend {
 
  private:
   std::shared_ptr<Participant> participant_;
+  NodeAnnouncer announcer_;
 };
 
 /// RTPS: the low bits of an entity's last byte distinguish an endpoint with key from one without.
@@ -119,6 +129,7 @@ class CycloneRawBus : public RegistryRawBus {
   explicit CycloneRawBus(const BusOptions& options)
       : RegistryRawBus("cyclonedds"),
         participant_(std::make_shared<Participant>(options)),
+        announcer_(participant_->node_endpoints(), participant_->id(), options, writers_of(participant_)),
         writers_(participant_->handle(), EndpointWatch::Direction::kWriters,
                  [this](const WriterId& id, const dds_builtintopic_endpoint_t* writer) { note_writer(id, writer); }),
         readers_(participant_->handle(), EndpointWatch::Direction::kReaders,
@@ -153,10 +164,11 @@ class CycloneRawBus : public RegistryRawBus {
   void note_reader(const WriterId& id, const dds_builtintopic_endpoint_t* endpoint) {
     if (endpoint == nullptr) return registry_.note_gone(id);
     const RawTopic topic{endpoint->topic_name, endpoint->type_name, is_keyed(id)};
-    registry_.note(TopicReader{id, topic, participant_->is_own(id)});
+    registry_.note(TopicReader{id, topic, participant_->is_own(id), user_data(*endpoint->qos)});
   }
 
   std::shared_ptr<Participant> participant_;
+  NodeAnnouncer announcer_;
   EndpointWatch writers_, readers_;  // last: they use the others
 };
 

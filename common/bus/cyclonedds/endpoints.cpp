@@ -97,12 +97,14 @@ CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const Sam
   const dds_entity_t reader = dds_create_reader(participant_->handle(), vendor.handle, qos.get(), listener.get());
   if (reader < 0) throw BusError("Cyclone DDS refused a reader on topic " + topic + ": " + dds_strretcode(reader));
   reader_ = reader;
+  entry_.emplace(participant_->node_endpoints(), topic, guid_of(reader), NodeEndpoints::Direction::kReads);
   if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
   thread_.wake();  // a sample may have come before reader_ was known
   if (status_.callbacks().on_writer) thread_.post([this] { note_writers(); });  // so may a match
 }
 
 CycloneReader::~CycloneReader() {
+  entry_.reset();
   types_.reset();
   dds_set_listener(reader_, nullptr);  // waits for a running one
   thread_.stop();                      // waits for a running callback; only now nothing takes from the reader
@@ -164,10 +166,12 @@ CycloneWriter::CycloneWriter(std::shared_ptr<Participant> participant, const Sam
   writer_ = dds_create_writer(participant_->handle(), topic_.handle, qos.get(), listener.get());
   if (writer_ < 0) throw BusError("Cyclone DDS refused a writer on topic " + topic + ": " + dds_strretcode(writer_));
   last_.writer = guid_of(writer_);
+  entry_.emplace(participant_->node_endpoints(), topic, last_.writer, NodeEndpoints::Direction::kWrites);
   if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
 }
 
 CycloneWriter::~CycloneWriter() {
+  entry_.reset();
   types_.reset();
   dds_set_listener(writer_, nullptr);  // waits for a running one
   dds_delete(writer_);

@@ -47,6 +47,7 @@ class CycloneReader : public ReaderBackend {
   std::atomic<dds_entity_t> reader_{0};
   StatusReporter status_;
   std::optional<TopicTypes::Watch> types_;
+  std::optional<NodeEndpoints::Entry> entry_;
   CallbackThread thread_;
 };
 
@@ -74,6 +75,7 @@ class CycloneWriter {
   SampleOrigin last_;  ///< as Cyclone counts, for readers in this process
   dds_entity_t writer_ = 0;
   std::optional<TopicTypes::Watch> types_;
+  std::optional<NodeEndpoints::Entry> entry_;
 };
 
 /// Writes messages of common/msg. A loan is the sample's own memory: write_loaned() copies nothing. With iceoryx it

@@ -143,6 +143,8 @@ void map_security(const SecurityOptions& security, const Qos& qos) {
 Entity create_participant(const BusOptions& options) {
   const Qos qos(dds_create_qos());
   dds_qset_entity_name(qos.get(), options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
+  const std::string user_data = participant_user_data(options);
+  dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
   map_security(options.security, qos);
   const LogCapture log;
   const dds_entity_t handle = dds_create_participant(options.domain, qos.get(), nullptr);

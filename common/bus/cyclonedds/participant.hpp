@@ -12,6 +12,7 @@
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/cyclonedds/unmatched_participants.hpp"
 #include "common/bus/discovery.hpp"
+#include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::cyclonedds {
 
@@ -69,6 +70,8 @@ class Participant {
   /// Throws BusError when it exists with another type.
   VendorTopic topic(const std::string& name, const SampleType& type);
   TopicTypes& types();
+  /// What is announced to ROS 2: endpoints enter themselves.
+  NodeEndpoints& node_endpoints() { return node_endpoints_; }
 
  private:
   struct KnownTopic {
@@ -86,6 +89,7 @@ class Participant {
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
   TopicTypes types_;
+  NodeEndpoints node_endpoints_;
   std::unique_ptr<EndpointWatch> writers_, readers_;  ///< from the first call of types() on; they end first
 };
 

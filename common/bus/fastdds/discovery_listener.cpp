@@ -165,7 +165,8 @@ void DiscoveryListener::on_subscriber_discovery(Participant* participant, rtps::
   const WriterId id = to_writer_id(data.guid());
   if (gone) return registry_->note_gone(id);
   const RawTopic topic{data.topicName().to_string(), data.typeName().to_string(), data.topicKind() == rtps::WITH_KEY};
-  registry_->note(TopicReader{id, topic, is_own(*participant, data.guid())});
+  const auto& announced = data.m_qos.m_userData;
+  registry_->note(TopicReader{id, topic, is_own(*participant, data.guid()), {announced.begin(), announced.end()}});
 }
 
 }  // namespace rtd::bus::fastdds

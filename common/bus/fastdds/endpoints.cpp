@@ -26,12 +26,14 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
     reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
   }
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
+  entry_.emplace(participant_->node_endpoints(), topic, to_writer_id(guid()), NodeEndpoints::Direction::kReads);
   thread_.wake();  // a sample may have come before reader_ was known
 }
 
 FastddsReader::~FastddsReader() {
   dds::DataReader* const reader = reader_;
   reader->set_listener(nullptr);
+  entry_.reset();
   types_.reset();
   thread_.stop();  // waits for a running callback; only now nothing takes from the reader
   const std::lock_guard lock(participant_->readers_mutex());
@@ -80,10 +82,12 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
   writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
   participant_->writer_created();
+  entry_.emplace(participant_->node_endpoints(), topic, id(), NodeEndpoints::Direction::kWrites);
 }
 
 FastddsWriter::~FastddsWriter() {
   writer_->set_listener(nullptr);
+  entry_.reset();
   publisher_.delete_datawriter(writer_);
 }
 

@@ -68,6 +68,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   StatusReporter status_;
   CallbackThread thread_;
   std::optional<TopicTypes::Watch> types_;
+  std::optional<NodeEndpoints::Entry> entry_;
 };
 
 /// One DataWriter. A loan of a message without 64-bit members is a slot of the writer's own shared memory, which
@@ -108,6 +109,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   bool lends_own_memory_ = false;  ///< of the data-sharing pool
   std::set<void*> vendor_loans_;
   dds::DataWriter* writer_ = nullptr;
+  std::optional<NodeEndpoints::Entry> entry_;
 };
 
 }  // namespace rtd::bus::fastdds

@@ -14,6 +14,7 @@
 #include "common/bus/fastdds/participant.hpp"
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/prefixed_calls.hpp"
+#include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -131,10 +132,36 @@ std::unique_ptr<CallEndpoint> create_calls(std::shared_ptr<Participant> particip
                                         role, std::move(on_call));
 }
 
+class FastddsRawWriter : public RawWriter {
+ public:
+  FastddsRawWriter(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawWriterOptions& options,
+                   StatusCallbacks callbacks)
+      : writer_(std::move(participant), create_raw_codec(topic, options), topic.name, raw_writer_qos(options),
+                std::move(callbacks)) {}
+  bool write(std::span<const std::byte> cdr, std::int64_t source_ns) override {
+    const RawOutput output{cdr, source_ns};
+    return writer_.write(&output);
+  }
+  int matched() const override { return writer_.matched(); }
+  bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
+
+ private:
+  FastddsWriter writer_;
+};
+
+NodeAnnouncer::CreateWriter writers_of(const std::shared_ptr<Participant>& participant) {
+  return [participant](const RawTopic& topic, const RawWriterOptions& options) {
+    return std::make_unique<FastddsRawWriter>(participant, topic, options, StatusCallbacks());
+  };
+}
+
 class FastddsBackend : public BusBackend {
  public:
-  FastddsBackend(std::shared_ptr<Participant> participant, bool shared_memory)
-      : BusBackend("fastdds"), participant_(std::move(participant)), shared_memory_(shared_memory) {}
+  FastddsBackend(const std::shared_ptr<Participant>& participant, const BusOptions& options)
+      : BusBackend("fastdds"),
+        participant_(participant),
+        shared_memory_(options.shared_memory),
+        announcer_(participant->node_endpoints(), participant->id(), options, writers_of(participant)) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
@@ -162,29 +189,15 @@ class FastddsBackend : public BusBackend {
 
   std::shared_ptr<Participant> participant_;
   const bool shared_memory_;
-};
-
-class FastddsRawWriter : public RawWriter {
- public:
-  FastddsRawWriter(std::shared_ptr<Participant> participant, const RawTopic& topic, const RawWriterOptions& options,
-                   StatusCallbacks callbacks)
-      : writer_(std::move(participant), create_raw_codec(topic, options), topic.name, raw_writer_qos(options),
-                std::move(callbacks)) {}
-  bool write(std::span<const std::byte> cdr, std::int64_t source_ns) override {
-    const RawOutput output{cdr, source_ns};
-    return writer_.write(&output);
-  }
-  int matched() const override { return writer_.matched(); }
-  bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
-
- private:
-  FastddsWriter writer_;
+  NodeAnnouncer announcer_;
 };
 
 class FastddsRawBus : public RegistryRawBus {
  public:
   FastddsRawBus(const BusOptions& options, const HostLimits& limits)
-      : RegistryRawBus("fastdds"), participant_(std::make_shared<Participant>(options, limits, &registry_)) {}
+      : RegistryRawBus("fastdds"),
+        participant_(std::make_shared<Participant>(options, limits, &registry_)),
+        announcer_(participant_->node_endpoints(), participant_->id(), options, writers_of(participant_)) {}
   ~FastddsRawBus() override {
     registry_.watch(nullptr);
     participant_->silence();
@@ -206,6 +219,7 @@ class FastddsRawBus : public RegistryRawBus {
 
  private:
   std::shared_ptr<Participant> participant_;
+  NodeAnnouncer announcer_;
 };
 
 /// The limits of this host, which must have enough shared memory.
@@ -218,8 +232,7 @@ HostLimits sufficient_limits(const BusOptions& options) {
 }  // namespace
 
 std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
-  return std::make_shared<FastddsBackend>(std::make_shared<Participant>(options, sufficient_limits(options)),
-                                          options.shared_memory);
+  return std::make_shared<FastddsBackend>(std::make_shared<Participant>(options, sufficient_limits(options)), options);
 }
 
 std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {

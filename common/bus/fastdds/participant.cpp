@@ -18,6 +18,7 @@
 #include "common/bus/fastdds/c_library.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/ros_graph.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
 /// Fast DDS 2.9 deletes its statistics through a base class without virtual destructor; everything else stays checked.
@@ -86,6 +87,8 @@ std::uint32_t next_number() {
 dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
   dds::DomainParticipantQos qos;
   qos.name(options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
+  const std::string user_data = participant_user_data(options);
+  qos.user_data().setValue({user_data.begin(), user_data.end()});
   map_network(options, limits, scope, qos);
   map_security(options.security, qos);
   auto& builtin = qos.wire_protocol().builtin;
@@ -160,6 +163,10 @@ void Participant::create_publishers(const NetworkOptions& network) {
   subscriber.partition().push_back("");
   subscriber.partition().push_back(host.c_str());
   host_subscriber_ = participant_->create_subscriber(subscriber);
+}
+
+WriterId Participant::id() const {
+  return to_writer_id(participant_->guid());
 }
 
 dds::Publisher& Participant::publisher(const std::string& topic) {

@@ -16,6 +16,7 @@
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/discovery_listener.hpp"
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -44,6 +45,9 @@ class Participant {
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
   TopicTypes& types() { return listener_.types(); }
+  WriterId id() const;
+  /// What is announced to ROS 2: endpoints enter themselves.
+  NodeEndpoints& node_endpoints() { return node_endpoints_; }
   /// What is discovered from now on goes to this listener, which outlives the participant or is silenced, instead of
   /// to ours.
   void observe(dds::DomainParticipantListener& listener) {
@@ -69,6 +73,7 @@ class Participant {
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
   std::mutex topics_mutex_, readers_mutex_;
+  NodeEndpoints node_endpoints_;
 };
 
 }  // namespace rtd::bus::fastdds

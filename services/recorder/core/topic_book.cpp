@@ -12,9 +12,9 @@ namespace rtd::recorder {
 bool TopicFilter::wants(const std::string& dds_topic) const {
   if (!robot_.empty() && !bus::concerns_robot(dds_topic, robot_)) return false;
   const std::string unnamed = robot_.empty() ? dds_topic : bus::split_robot(dds_topic).topic;
-  const bool service = bus::is_service_topic(dds_topic);
+  const bool service = bus::is_internal_to_ros(dds_topic);
   return std::ranges::any_of(patterns_, [&](const std::string& pattern) {
-    if (service && !bus::is_service_topic(pattern)) return false;
+    if (service && !bus::is_internal_to_ros(pattern)) return false;
     return ros2::matches_topic(pattern, dds_topic) || ros2::matches_topic(pattern, unnamed);
   });
 }

@@ -8,11 +8,13 @@
 #include <chrono>
 #include <thread>
 
+#include "common/bus/command_codec.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_description.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/ros_double.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -110,6 +112,44 @@ TEST_P(Ros2Wire, default_and_sensor_data_subscriptions_are_served) {
   }
   EXPECT_NE(reliable.next(), nullptr);
   EXPECT_NE(best_effort.next(), nullptr);
+}
+
+TEST_P(Ros2Wire, a_connection_is_a_node_that_follows_its_endpoints) {
+  using rtd::testing::RosDouble;
+  for (const std::string& other : dds_vendors()) {
+    BusOptions watching = options("ros2-wire-ros");
+    watching.vendor = other;
+    RosDouble ros(watching);
+    BusOptions own = options("rtd-slam");
+    own.robot = "anna";
+    auto bus = connect(own);
+    const auto second = connect(own);
+    auto pose = bus->writer(topics::kPose);
+    auto detections = bus->reader(topics::kDetections, [](const auto&) {});
+    const auto reads = [&] { return ros.read_by("/anna/rtd_slam"); };
+    const auto writes = [&] { return ros.written_by("/anna/rtd_slam"); };
+    const std::set<std::string> pose_only{"rt/anna/slam/pose"}, detections_only{"rt/anna/detector/detections"};
+    EXPECT_TRUE(RosDouble::eventually([&] { return writes() == pose_only && reads() == detections_only; }));
+    EXPECT_TRUE(RosDouble::eventually([&] { return ros.nodes().contains("/anna/rtd_slam_2"); })) << "names are unique";
+    detections = {};
+    EXPECT_TRUE(RosDouble::eventually([&] { return reads().empty(); }));
+    EXPECT_EQ(writes(), pose_only);
+    EXPECT_EQ(ros.warnings(), std::vector<std::string>());
+  }
+}
+
+TEST_P(Ros2Wire, no_program_of_ros2_warns_of_an_endpoint) {
+  const auto bus = connect(options("ros2-wire-typed"));
+  rtd::testing::RosDouble ros(options("ros2-wire-ros"));
+  const auto frames = bus->writer(topics::kFrame);
+  const auto tracking = bus->reader(topics::kTracking, [](const auto&) {});
+  const CommandServer server(*bus, "slam/save_map", CommandKind::kText, [](const auto&) { return CommandAnswer{}; });
+  const auto raw = connect_raw(options("ros2-wire-raw"));
+  const auto unknown = raw->writer({"rt/unknown", "unknown_msgs::msg::dds_::Thing_"}, {});
+  const auto client = raw->create_calls(call_topics("slam/save_map", CommandKind::kText), CallRole::kClient,
+                                        [](const CallId&, std::span<const std::byte>) {});
+  EXPECT_TRUE(rtd::testing::RosDouble::eventually([&] { return ros.endpoints() >= 10; })) << ros.endpoints();
+  EXPECT_EQ(ros.warnings(), std::vector<std::string>());
 }
 
 INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Wire, ::testing::ValuesIn(dds_vendors()),

@@ -95,7 +95,7 @@ class Recorder {
   void listen(const bus::TopicWriter& writer, bus::WriterChange change) {
     if (change != bus::WriterChange::kAppeared || writer.topic.name == "rtd/status") return;
     const std::string topic = writer.topic.name;
-    if (bus::is_service_topic(topic)) return;
+    if (bus::is_internal_to_ros(topic)) return;
     if (readers_.contains(topic)) return;
     EXPECT_EQ(writer.topic.type, topic == "rt/clock" ? "rosgraph_msgs::msg::dds_::Clock_" : type_of(topic));
     bus::RawHandlers handlers;

@@ -154,7 +154,7 @@ TEST(VendorMatrixTopics, are_all_that_services_write) {
   std::vector<std::string> names, written;
   for_each_topic([&](const auto& topic) { names.emplace_back(topic.name); });
   for (const TopicRoles& roles : topic_roles()) {
-    const bool pattern = roles.topic.find('*') != std::string::npos || is_service_topic(roles.topic);
+    const bool pattern = roles.topic.find('*') != std::string::npos || is_internal_to_ros(roles.topic);
     const bool by_services = !roles.writers.empty() && roles.writers.front() != "observer";
     const bool as_bytes = roles.topic == msg::kImuTopic || roles.topic == msg::kWheelTopic;  // common/msg/imu.hpp
     if (!pattern && by_services && !as_bytes) written.push_back(roles.topic);

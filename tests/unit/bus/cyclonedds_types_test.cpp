@@ -8,6 +8,8 @@
 #include <geometry_msgs.h>
 #include <gtest/gtest.h>
 #include <nav_msgs.h>
+#include <rcl_interfaces.h>
+#include <rmw_dds_common.h>
 #include <rtd_msgs.h>
 #include <sensor_msgs.h>
 #include <tf2_msgs.h>
@@ -19,6 +21,7 @@
 
 #include "common/bus/message_cdr.hpp"
 #include "tests/unit/bus/recorded_samples.hpp"
+#include "tests/unit/bus/ros_messages.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -141,6 +144,36 @@ TEST(CycloneTypes, write_and_read_the_bytes_of_generated_code) {
     visit_message_type(id, [&]<class T>() { expect_same_bytes<T>(generated); });
   }
   EXPECT_THROW(dds_type_name(MessageId{place}), BusError) << "a type is not compared";
+}
+
+template <class T>
+void expect_same_ros_bytes(dds_entity_t participant, const dds_topic_descriptor_t& descriptor) {
+  SCOPED_TRACE(descriptor.m_typename);
+  GeneratedType generated(participant, descriptor);
+  std::mt19937_64 random(9);
+  for (int number = 0; number < 100; ++number) {
+    const Cdr cdr = ros::encode<ros::Wire::kCdr>(reflect::random_ros_message<T>(random));
+    ASSERT_EQ(generated.passed_through(cdr), cdr);
+  }
+}
+
+TEST(CycloneTypes, of_parameters_and_nodes_have_the_bytes_of_generated_code) {
+  const LocalDomain domain;
+  const auto compare = [&]<class T>(msg::TypeOf<T>, const dds_topic_descriptor_t& descriptor) {
+    expect_same_ros_bytes<T>(domain.participant(), descriptor);
+  };
+  compare(msg::TypeOf<msg::ListParametersRequest>(), rcl_interfaces_srv_dds__ListParameters_Request__desc);
+  compare(msg::TypeOf<msg::ListParametersReply>(), rcl_interfaces_srv_dds__ListParameters_Response__desc);
+  compare(msg::TypeOf<msg::ParameterNames>(), rcl_interfaces_srv_dds__GetParameters_Request__desc);
+  compare(msg::TypeOf<msg::GetParametersReply>(), rcl_interfaces_srv_dds__GetParameters_Response__desc);
+  compare(msg::TypeOf<msg::GetParameterTypesReply>(), rcl_interfaces_srv_dds__GetParameterTypes_Response__desc);
+  compare(msg::TypeOf<msg::DescribeParametersReply>(), rcl_interfaces_srv_dds__DescribeParameters_Response__desc);
+  compare(msg::TypeOf<msg::ParameterList>(), rcl_interfaces_srv_dds__SetParameters_Request__desc);
+  compare(msg::TypeOf<msg::SetParametersReply>(), rcl_interfaces_srv_dds__SetParameters_Response__desc);
+  compare(msg::TypeOf<msg::SetParametersAtomicallyReply>(),
+          rcl_interfaces_srv_dds__SetParametersAtomically_Response__desc);
+  compare(msg::TypeOf<msg::ParticipantEntitiesInfo<16>>(), rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc);
+  compare(msg::TypeOf<msg::ParticipantEntitiesInfo<24>>(), rmw_dds_common_msg_dds__ParticipantEntitiesInfo24__desc);
 }
 
 }  // namespace
