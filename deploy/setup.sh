@@ -50,6 +50,7 @@ test_packages=(
   pocl-opencl-icd
   python3-websockets
   iproute2 nftables
+  ament-cmake rosidl-cmake rosidl-generator-c-cpp python3-yaml
 )
 
 # Only for the tests with external viewers; a command that exists already needs no package.

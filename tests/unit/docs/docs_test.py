@@ -15,7 +15,8 @@ MAX_LINE = 120
 OUTPUT_AND_EXTERNAL_FILES = {"ablation.md", "associate.py"}
 LONGEST_RESULTS, LONGEST_CHANGES = 250, 60  # lines of the page, and of each version's section
 # colcon reads package.xml before CMake runs, so this copy has to be a literal; the test compares it.
-VERSION_COPIES = {"CMakeLists.txt", "CHANGELOG.md", "idl/ros2/rtd_msgs/package.xml"}
+ROS_PACKAGES = {"idl/ros2/rtd_msgs/package.xml", "deploy/ros2/rtd_slam_launch/package.xml"}
+VERSION_COPIES = {"CMakeLists.txt", "CHANGELOG.md", *ROS_PACKAGES}
 
 PATH_IN_COMMENT = re.compile(rf"(?<![\w/.-])(?:{'|'.join(TOP_FOLDERS)})/[\w./-]*\w")
 
@@ -193,7 +194,8 @@ class Docs(unittest.TestCase):
 
     def test_version_stands_in_one_place(self):
         version = re.search(r"^project\(\w+ VERSION ([\d.]+)", text_of("CMakeLists.txt"), re.MULTILINE).group(1)
-        self.assertIn(f"<version>{version}</version>", text_of("idl/ros2/rtd_msgs/package.xml"))
+        for package in ROS_PACKAGES:
+            self.assertIn(f"<version>{version}</version>", text_of(package))
         self.assertRegex(text_of("CHANGELOG.md"), rf"(?m)^## {re.escape(version)}$")
         copy = re.compile(rf"(?<![\d.]){re.escape(version)}(?!\.?\d)")
         self.assert_none([f"{path}: the version is written out; take it from CMake" for path in FILES
