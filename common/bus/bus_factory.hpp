@@ -55,6 +55,7 @@ struct EnvironmentSetting {
 
 /// bus.shm_segment_mib of a process that sends neither images nor clouds.
 inline constexpr std::uint32_t kSmallSegmentMib = 4;
+
 /// How our nodes are announced to ROS 2: identities have another size up to Humble than from Iron on.
 enum class RosGraph { kOff, kHumble, kIron };
 
