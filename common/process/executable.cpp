@@ -63,9 +63,11 @@ std::string find_executable(const std::string& name) {
 }
 
 std::string missing_executable(const std::string& name) {
-  const std::string package = name == "rtd-viewer" ? "rtd-slam-viewer" : "rtd-slam";
+  const bool viewer = name == "rtd-viewer";
+  const std::string package = viewer ? "rtd-slam-viewer" : "rtd-slam";
   return name + " is neither beside rtd (" + own_directory() + ") nor in PATH: install the package " + package +
-         ", or build it with 'cmake --build <build folder> --target " + name + "'";
+         ", or build it with 'cmake --build <build folder> --target " + name + "'" +
+         (viewer ? " (needs libboost-dev and libjs-three)" : "");
 }
 
 std::string require_executable(const std::string& name) {

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   geometry_msgs::msg::dds_::PoseStamped_ pose;
   SampleInfo info;
   while (left > 0 && reader->wait_for_unread_message({20, 0})) {
-    if (reader->take_next_sample(&pose, &info) != ReturnCode_t::RETCODE_OK || !info.valid_data) continue;
+    if (!(reader->take_next_sample(&pose, &info) == ReturnCode_t(0)) || !info.valid_data) continue;  // 0: OK
     const auto& stamp = pose.header().stamp();
     const auto& at = pose.pose().position();
     std::printf("%d.%09u %s %.3f %.3f %.3f\n", stamp.sec(), stamp.nanosec(), pose.header().frame_id().c_str(), at.x(),

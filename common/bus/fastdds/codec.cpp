@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/codec.hpp"
 
-#include <fastdds/rtps/common/WriteParams.h>
-
 #include <algorithm>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <optional>
@@ -14,17 +12,13 @@
 namespace rtd::bus::fastdds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::types::ReturnCode_t;
-
 template <class T>
 class MessageCodec : public Codec {
  public:
   bool plain() const override { return kPlain; }
   dds::TypeSupport create_type() const override { return dds::TypeSupport(new MessageType<T>); }
   bool write(dds::DataWriter& writer, const void* message) const override {
-    return writer.write(const_cast<void*>(message));  // the vendor only reads it
+    return succeeded(writer.write(const_cast<void*>(message)));  // the vendor only reads it
   }
   TakenSample take(dds::DataReader& reader, const Accepts& accepts) override;
   bool in_place() const override { return kPlain && alignof(T) <= sizeof(kCdrHeader); }
@@ -53,7 +47,7 @@ class NextWanted {
  public:
   NextWanted(dds::DataReader& reader, const Codec::Accepts& accepts) : accepts_(accepts) {
     dds::SampleInfo next;
-    if (!accepts_ || reader.get_first_untaken_info(&next) != ReturnCode_t::RETCODE_OK) return;
+    if (!accepts_ || !succeeded(reader.get_first_untaken_info(&next))) return;
     writer_ = to_writer_id(next.sample_identity.writer_guid());
     wanted_ = accepts_(*writer_);
   }
@@ -76,7 +70,7 @@ TakenSample MessageCodec<T>::take(dds::DataReader& reader, const Accepts& accept
   const NextWanted next(reader, accepts);
   std::shared_ptr<T> message = next.wanted() || sizeof(T) < kCheapToCopy ? create() : nullptr;
   dds::SampleInfo info;
-  if (reader.take_next_sample(message.get(), &info) != ReturnCode_t::RETCODE_OK) return {};
+  if (!succeeded(reader.take_next_sample(message.get(), &info))) return {};
   const WriterId writer = to_writer_id(info.sample_identity.writer_guid());
   if (!info.valid_data || !next.wanted(writer)) return {TakenSample::Kind::kNoData};
   if (message == nullptr) return {TakenSample::Kind::kUnusable};
@@ -108,10 +102,10 @@ bool RawCodec::write(dds::DataWriter& writer, const void* message) const {
   const bool right_size = fixed_bytes_ == 0 || output.cdr.size() == fixed_bytes_;
   if (output.cdr.size() < ByteBlock::kCdrHeaderBytes || !right_size) return false;
   RawData data{output.cdr, nullptr};
-  if (output.source_ns == 0) return writer.write(&data);
+  if (output.source_ns == 0) return succeeded(writer.write(&data));
   rtps::WriteParams params;
   params.source_timestamp().from_ns(output.source_ns);
-  return writer.write(&data, params);
+  return succeeded(writer.write(&data, params));
 }
 
 std::int64_t known_or(const rtps::Time_t& time, std::int64_t fallback_ns) {
@@ -129,7 +123,7 @@ TakenSample RawCodec::take(dds::DataReader& reader, const Accepts&) {
   auto block = pool_.acquire();
   RawData data{{}, block.get()};
   dds::SampleInfo info;
-  if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) return {};
+  if (!succeeded(reader.take_next_sample(&data, &info))) return {};
   auto sample = std::make_shared<RawSample>();
   sample->writer = to_writer_id(info.sample_identity.writer_guid());
   sample->sequence = static_cast<std::int64_t>(info.sample_identity.sequence_number().to64long());

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 
+#include "common/bus/fastdds/versions/vendor.hpp"
 #include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::fastdds {
@@ -25,13 +26,13 @@ class Codec {
  public:
   virtual ~Codec() = default;
   virtual bool plain() const = 0;
-  virtual eprosima::fastdds::dds::TypeSupport create_type() const = 0;
+  virtual dds::TypeSupport create_type() const = 0;
   /// Thread-safe.
-  virtual bool write(eprosima::fastdds::dds::DataWriter& writer, const void* message) const = 0;
+  virtual bool write(dds::DataWriter& writer, const void* message) const = 0;
   /// The next sample of a writer that `accepts` wants, if it is given; one of another writer gives kNoData and is not
   /// copied when it is large. For one thread.
   using Accepts = std::function<bool(const WriterId& writer)>;
-  virtual TakenSample take(eprosima::fastdds::dds::DataReader& reader, const Accepts& accepts) = 0;
+  virtual TakenSample take(dds::DataReader& reader, const Accepts& accepts) = 0;
   /// Whether a sample in the vendor's memory, 4 bytes behind a multiple of 8, may be used as the message itself.
   virtual bool in_place() const { return false; }
   /// An uninitialised message to fill in. Plain types only. Thread-safe.
@@ -49,7 +50,5 @@ struct RawOutput {
 /// A codec without a type: write() takes a RawOutput, take() gives a RawSample.
 std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawReaderOptions& options);
 std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawWriterOptions& options);
-
-WriterId to_writer_id(const eprosima::fastrtps::rtps::GUID_t& guid);
 
 }  // namespace rtd::bus::fastdds

@@ -2,21 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/discovery_listener.hpp"
 
-#include <algorithm>
 #include <chrono>
-#include <sstream>
 #include <string>
 
-#include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
-#include "common/bus/fastdds/qos_mapping.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 /// After a participant has appeared; the second one is for a busy host.
 constexpr std::chrono::milliseconds kDelays[] = {std::chrono::milliseconds(30), std::chrono::milliseconds(80)};
@@ -32,27 +25,12 @@ void announce(dds::DomainParticipant& participant, std::uint64_t count) {
   participant.set_qos(qos);
 }
 
-bool is_own(const dds::DomainParticipant& participant, const rtps::GUID_t& endpoint) {
-  return endpoint.guidPrefix == participant.guid().guidPrefix;
-}
-
-/// `Info`: of a writer or of a reader.
-template <class Info>
-void note_type(const dds::DomainParticipant& participant, const Info& info, bool gone, TopicTypes& types) {
-  if (is_own(participant, info.guid())) return;
-  std::ostringstream id;
-  id << info.guid();
-  if (gone) {
-    types.gone(id.str());
-  } else {
-    types.appeared(id.str(), info.topicName().to_string(), info.typeName().to_string());
-  }
-}
-
-ParticipantId id_of(const rtps::GuidPrefix_t& prefix) {
-  ParticipantId id{};
-  std::copy_n(prefix.value, id.size(), id.begin());
-  return id;
+/// `Endpoint`: TopicWriter or TopicReader.
+template <class Endpoint>
+void note_type(const Endpoint& endpoint, bool gone, TopicTypes& types) {
+  if (endpoint.own) return;
+  if (gone) return types.gone(to_string(endpoint.id));
+  types.appeared(to_string(endpoint.id), endpoint.topic.name, endpoint.topic.type);
 }
 
 }  // namespace
@@ -109,8 +87,8 @@ void ServerWatch::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void ServerWatch::appeared(const rtps::GuidPrefix_t& participant) {
-  if (participant == server_prefix()) settled_.request_stop();
+void ServerWatch::appeared(const ParticipantId& participant) {
+  if (participant == server_id()) settled_.request_stop();
 }
 
 DiscoveryListener::DiscoveryListener(const BusOptions& options, EndpointRegistry* registry)
@@ -119,7 +97,7 @@ DiscoveryListener::DiscoveryListener(const BusOptions& options, EndpointRegistry
 void DiscoveryListener::start(dds::DomainParticipant& participant, const BusOptions& options) {
   reannouncer_.start(participant);
   server_.start(options);
-  if (registry_) registry_->note(id_of(participant.guid().guidPrefix), participant.get_qos().name().to_string());
+  if (registry_) registry_->note(participant_of(to_writer_id(participant.guid())), participant.get_qos().name().to_string());
 }
 
 void DiscoveryListener::stop() {
@@ -127,46 +105,28 @@ void DiscoveryListener::stop() {
   server_.stop();
 }
 
-void DiscoveryListener::on_participant_discovery(Participant*, rtps::ParticipantDiscoveryInfo&& info) {
-  if (security_) security_->discovered(info);
-  note(info);
-  if (info.status != rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+void DiscoveryListener::found(const FoundParticipant& participant) {
+  using Change = FoundParticipant::Change;
+  if (security_) security_->discovered(participant);
+  if (registry_ && participant.change == Change::kGone) registry_->note_gone(participant.id);
+  if (registry_ && participant.change != Change::kGone) registry_->note(participant.id, participant.name);
+  if (participant.change != Change::kAppeared) return;
   reannouncer_.announce_again();
-  server_.appeared(info.info.m_guid.guidPrefix);
+  server_.appeared(participant.id);
 }
 
-void DiscoveryListener::note(const rtps::ParticipantDiscoveryInfo& info) {
-  if (!registry_) return;
-  using Info = rtps::ParticipantDiscoveryInfo;
-  const bool gone = info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT;
-  const ParticipantId id = id_of(info.info.m_guid.guidPrefix);
-  gone ? registry_->note_gone(id) : registry_->note(id, info.info.m_participantName.to_string());
+void DiscoveryListener::refused(const ParticipantId& participant) {
+  if (security_) security_->refused(participant);
 }
 
-void DiscoveryListener::onParticipantAuthentication(Participant*, rtps::ParticipantAuthenticationInfo&& info) {
-  if (security_) security_->authenticated(info);
+void DiscoveryListener::found(const TopicWriter& writer, bool gone) {
+  note_type(writer, gone, types_);
+  if (registry_) gone ? registry_->note_gone(writer.id) : registry_->note(writer);
 }
 
-void DiscoveryListener::on_publisher_discovery(Participant* participant, rtps::WriterDiscoveryInfo&& info) {
-  const bool gone = info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER;
-  note_type(*participant, info.info, gone, types_);
-  if (registry_ == nullptr) return;
-  TopicWriter writer = to_topic_writer(info.info);
-  if (gone) return registry_->note_gone(writer.id);
-  writer.own = is_own(*participant, info.info.guid());
-  registry_->note(writer);
-}
-
-void DiscoveryListener::on_subscriber_discovery(Participant* participant, rtps::ReaderDiscoveryInfo&& info) {
-  const bool gone = info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER;
-  note_type(*participant, info.info, gone, types_);
-  if (!registry_) return;
-  const rtps::ReaderProxyData& data = info.info;
-  const WriterId id = to_writer_id(data.guid());
-  if (gone) return registry_->note_gone(id);
-  const RawTopic topic{data.topicName().to_string(), data.typeName().to_string(), data.topicKind() == rtps::WITH_KEY};
-  const auto& announced = data.m_qos.m_userData;
-  registry_->note(TopicReader{id, topic, is_own(*participant, data.guid()), {announced.begin(), announced.end()}});
+void DiscoveryListener::found(const TopicReader& reader, bool gone) {
+  note_type(reader, gone, types_);
+  if (registry_) gone ? registry_->note_gone(reader.id) : registry_->note(reader);
 }
 
 }  // namespace rtd::bus::fastdds

@@ -9,11 +9,9 @@
 #include <stop_token>
 #include <thread>
 
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
-
 #include "common/bus/discovery.hpp"
 #include "common/bus/fastdds/participant_security.hpp"
+#include "common/bus/fastdds/versions/vendor.hpp"
 
 namespace rtd::bus::fastdds {
 
@@ -23,14 +21,14 @@ namespace rtd::bus::fastdds {
 class Reannouncer {
  public:
   ~Reannouncer() { stop(); }
-  void start(eprosima::fastdds::dds::DomainParticipant& participant);
+  void start(dds::DomainParticipant& participant);
   /// Afterwards the participant is not touched. To be called before it is deleted.
   void stop();
   /// A participant has appeared.
   void announce_again();
 
  private:
-  void loop(eprosima::fastdds::dds::DomainParticipant& participant);
+  void loop(dds::DomainParticipant& participant);
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -47,7 +45,7 @@ class ServerWatch {
   /// Does nothing without a server in the options.
   void start(const BusOptions& options);
   void stop();
-  void appeared(const eprosima::fastrtps::rtps::GuidPrefix_t& participant);
+  void appeared(const ParticipantId& participant);
 
  private:
   std::stop_source settled_;  ///< found, or to be stopped
@@ -55,22 +53,19 @@ class ServerWatch {
 };
 
 /// Receives what Fast DDS discovers of the other participants of a domain and of their endpoints.
-class DiscoveryListener : public eprosima::fastdds::dds::DomainParticipantListener {
+class DiscoveryListener : public DiscoveryAdapter {
  public:
   /// `registry`, if any, gets all endpoints and participants.
   DiscoveryListener(const BusOptions& options, EndpointRegistry* registry);
-  void start(eprosima::fastdds::dds::DomainParticipant& participant, const BusOptions& options);
+  void start(dds::DomainParticipant& participant, const BusOptions& options);
   void stop();
   TopicTypes& types() { return types_; }
 
  private:
-  using Participant = eprosima::fastdds::dds::DomainParticipant;
-  void note(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-  void on_participant_discovery(Participant*, eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void onParticipantAuthentication(Participant*,
-                                   eprosima::fastrtps::rtps::ParticipantAuthenticationInfo&& info) override;
-  void on_publisher_discovery(Participant* participant, eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(Participant* participant, eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void found(const FoundParticipant& participant) override;
+  void refused(const ParticipantId& participant) override;
+  void found(const TopicWriter& writer, bool gone) override;
+  void found(const TopicReader& reader, bool gone) override;
 
   EndpointRegistry* const registry_;
   std::unique_ptr<SecurityWatch> security_;

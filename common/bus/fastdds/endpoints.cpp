@@ -6,8 +6,6 @@
 
 namespace rtd::bus::fastdds {
 
-using eprosima::fastrtps::types::ReturnCode_t;
-
 FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
                              const std::string& topic, const dds::DataReaderQos& qos, ErasedCallback on_message,
                              StatusCallbacks callbacks)
@@ -93,7 +91,7 @@ FastddsWriter::~FastddsWriter() {
 
 void* FastddsWriter::loan() {
   void* lent = nullptr;
-  if (lends_own_memory_ && writer_->loan_sample(lent) == ReturnCode_t::RETCODE_OK) {
+  if (lends_own_memory_ && succeeded(writer_->loan_sample(lent))) {
     return *vendor_loans_.insert(lent).first;
   }
   std::shared_ptr<void> slot = codec_->allocate();
@@ -102,7 +100,7 @@ void* FastddsWriter::loan() {
 
 bool FastddsWriter::write_loaned(void* slot) {
   if (vendor_loans_.erase(slot) > 0) {
-    if (writer_->write(slot)) return true;
+    if (succeeded(writer_->write(slot))) return true;
     writer_->discard_loan(slot);  // a failed write leaves it lent
     return false;
   }
@@ -120,7 +118,7 @@ void FastddsWriter::discard_loan(void* slot) {
 
 bool FastddsWriter::wait_acknowledged(int timeout_ms) {
   const auto nanoseconds = static_cast<std::uint32_t>(timeout_ms % 1000) * 1'000'000U;
-  return writer_->wait_for_acknowledgments({timeout_ms / 1000, nanoseconds}) == ReturnCode_t::RETCODE_OK;
+  return succeeded(writer_->wait_for_acknowledgments({timeout_ms / 1000, nanoseconds}));
 }
 
 }  // namespace rtd::bus::fastdds

@@ -27,7 +27,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   ~FastddsReader() override;
   int matched() const override { return status_.matched(); }
   /// Valid in callbacks, too.
-  eprosima::fastrtps::rtps::GUID_t guid() const { return reader_.load()->guid(); }
+  rtps::GUID_t guid() const { return reader_.load()->guid(); }
 
  private:
   bool handle_one();
@@ -37,7 +37,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   void on_data_available(dds::DataReader*) override { thread_.wake(); }
   void on_subscription_matched(dds::DataReader*, const dds::SubscriptionMatchedStatus& status) override {
     status_.report_matched(status.current_count);
-    const auto writer = eprosima::fastrtps::rtps::iHandle2GUID(status.last_publication_handle);
+    const auto writer = rtps::iHandle2GUID(status.last_publication_handle);
     status_.report_writer(to_writer_id(writer), status.current_count_change > 0);
   }
   void on_requested_deadline_missed(dds::DataReader*, const dds::RequestedDeadlineMissedStatus&) override {
@@ -49,7 +49,7 @@ class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
   void on_requested_incompatible_qos(dds::DataReader*, const dds::RequestedIncompatibleQosStatus& status) override {
     status_.report_incompatible_qos(name_of(status.last_policy_id));
   }
-  void on_sample_rejected(dds::DataReader*, const eprosima::fastrtps::SampleRejectedStatus& status) override {
+  void on_sample_rejected(dds::DataReader*, const dds::SampleRejectedStatus& status) override {
     status_.report_rejected(status.total_count);
   }
   void on_sample_lost(dds::DataReader*, const dds::SampleLostStatus& status) override {
@@ -86,7 +86,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   void discard_loan(void* slot) override;
   int matched() const override { return status_.matched(); }
   bool wait_acknowledged(int timeout_ms) override;
-  eprosima::fastrtps::rtps::GUID_t guid() const { return writer_->guid(); }
+  rtps::GUID_t guid() const { return writer_->guid(); }
   WriterId id() const override { return to_writer_id(guid()); }
 
  private:

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/vendors.hpp"
 
-#include <fastdds/rtps/common/WriteParams.h>
-
 #include <memory>
 #include <utility>
 
@@ -18,8 +16,6 @@
 
 namespace rtd::bus::fastdds {
 namespace {
-
-using eprosima::fastrtps::types::ReturnCode_t;
 
 /// What the codec writes: the bytes, and the identities beside them, which Fast DDS completes.
 struct CallOutput {
@@ -41,13 +37,13 @@ class CallCodec : public Codec {
   bool write(dds::DataWriter& writer, const void* message) const override {
     const CallOutput& output = *static_cast<const CallOutput*>(message);
     RawData data{output.cdr, nullptr};
-    return writer.write(&data, output.params);
+    return succeeded(writer.write(&data, output.params));
   }
   TakenSample take(dds::DataReader& reader, const Accepts&) override {
     auto sample = std::make_shared<CallSample>();
     RawData data{{}, &sample->bytes};
     dds::SampleInfo info;
-    if (reader.take_next_sample(&data, &info) != ReturnCode_t::RETCODE_OK) return {};
+    if (!succeeded(reader.take_next_sample(&data, &info))) return {};
     if (!info.valid_data) return {TakenSample::Kind::kNoData};
     sample->own = info.sample_identity;
     sample->related = info.related_sample_identity;

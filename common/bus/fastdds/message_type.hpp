@@ -2,24 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/common/SerializedPayload.h>
-
 #include <array>
 #include <cstring>
-#include <fastdds/dds/topic/TopicDataType.hpp>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/bus/backend.hpp"
+#include "common/bus/fastdds/versions/vendor.hpp"
 #include "common/bus/message_cdr.hpp"
 #include "common/bus/raw_bus.hpp"
 
 namespace rtd::bus::fastdds {
-
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 
 /// Adds the largest T to the size of a sample, as fastddsgen counts it for a type without bounds: texts of 255 letters,
 /// sequences of 100 elements.
@@ -56,39 +50,26 @@ struct LargestSample {
 /// The type support of a message, by its list of fields; that of a plain one is one memcpy. Fast DDS gives its peers
 /// the size of the largest sample; where there is none, that of generated code stays.
 template <class T>
-class MessageType : public dds::TopicDataType {
+class MessageType : public TypeSupportBase {
  public:
   static constexpr bool kPlain = MessageTraits<T>::kPlain;
   static constexpr std::uint32_t kHeaderBytes = sizeof(kCdrHeader);
-  using Payload = rtps::SerializedPayload_t;
 
-  MessageType() {
-    setName(dds_type_name(MessageTraits<T>::kId).c_str());
-    m_typeSize = largest_sample();
-    m_isGetKeyDefined = false;
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
+  MessageType() : TypeSupportBase(dds_type_name(MessageTraits<T>::kId), largest_sample(), false) {}
 
-  bool serialize(void* data, Payload* payload) override {
-    const T& message = *static_cast<const T*>(data);
-    const std::size_t written = write_cdr(message, {payload->data, payload->max_size});
-    payload->encapsulation = CDR_LE;
-    payload->length = static_cast<std::uint32_t>(written);
-    return written > 0;
+  std::size_t write(const void* data, std::span<std::uint8_t> to) const override {
+    return write_cdr(*static_cast<const T*>(data), to);
   }
   /// Without `data` the sample is not wanted and stays unread.
-  bool deserialize(Payload* payload, void* data) override {
-    return data == nullptr || read_cdr({payload->data, payload->length}, *static_cast<T*>(data));
+  bool read(std::span<const std::uint8_t> cdr, void* data) const override {
+    return data == nullptr || read_cdr(cdr, *static_cast<T*>(data));
   }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(cdr_size(*static_cast<const T*>(data))); };
+  std::uint32_t size_of(const void* data) const override {
+    return static_cast<std::uint32_t>(cdr_size(*static_cast<const T*>(data)));
   }
-  void* createData() override { return new T; }
-  void deleteData(void* data) override { delete static_cast<T*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-  bool is_bounded() const override { return kPlain; }
-  bool is_plain() const override { return kPlain; }
+  void* create() const override { return new T; }
+  void destroy(void* data) const override { delete static_cast<T*>(data); }
+  bool plain() const override { return kPlain; }
 
  private:
   static std::uint32_t largest_sample() {
@@ -109,50 +90,35 @@ struct RawData {
 };
 
 /// Passes the serialised sample on as it is, whatever its type.
-class RawType : public dds::TopicDataType {
+class RawType : public TypeSupportBase {
  public:
-  using Payload = rtps::SerializedPayload_t;
+  RawType(const RawTopic& topic, bool bounded, std::uint32_t fixed_bytes)
+      : TypeSupportBase(topic.type, fixed_bytes > 0 ? fixed_bytes : (bounded ? kMaxInPlace : kFirstGuess), topic.keyed),
+        bounded_(bounded) {}
 
-  RawType(const RawTopic& topic, bool bounded, std::uint32_t fixed_bytes) : bounded_(bounded) {
-    constexpr std::uint32_t kFirstGuess = 1024;      // memory grows with the samples
-    constexpr std::uint32_t kMaxInPlace = 64 << 20;  // the size is not announced; a larger sample would be refused
-    setName(topic.type.c_str());
-    m_typeSize = fixed_bytes > 0 ? fixed_bytes : (bounded ? kMaxInPlace : kFirstGuess);
-    m_isGetKeyDefined = topic.keyed;
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
-
-  bool serialize(void* data, Payload* payload) override {
+  std::size_t write(const void* data, std::span<std::uint8_t> to) const override {
     const std::span<const std::byte> cdr = static_cast<const RawData*>(data)->output;
-    if (payload->max_size < cdr.size()) return false;
-    payload->encapsulation = (std::to_integer<unsigned>(cdr[1]) & 1U) != 0 ? CDR_LE : CDR_BE;
-    std::memcpy(payload->data, cdr.data(), cdr.size());
-    payload->length = static_cast<std::uint32_t>(cdr.size());
-    return true;
+    if (to.size() < cdr.size()) return 0;
+    std::memcpy(to.data(), cdr.data(), cdr.size());
+    return cdr.size();
   }
-  bool deserialize(Payload* payload, void* data) override {
+  bool read(std::span<const std::uint8_t> cdr, void* data) const override {
     ByteBlock* const block = static_cast<RawData*>(data)->input;
     if (block == nullptr) return false;
-    block->assign(std::as_bytes(std::span(payload->data, payload->length)));
+    block->assign(std::as_bytes(cdr));
     return true;
   }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [size = static_cast<std::uint32_t>(static_cast<const RawData*>(data)->output.size())] { return size; };
+  std::uint32_t size_of(const void* data) const override {
+    return static_cast<std::uint32_t>(static_cast<const RawData*>(data)->output.size());
   }
-  void* createData() override { return new RawData; }
-  void deleteData(void* data) override { delete static_cast<RawData*>(data); }
-  /// One instance for all keys: which bytes are the key is not known.
-  bool getKey(void*, rtps::InstanceHandle_t* handle, bool) override {
-    const rtps::octet kOnlyInstance[16] = {1};
-    for (int i = 0; i < 16; ++i) handle->value[i] = kOnlyInstance[i];
-    return true;
-  }
-  bool is_bounded() const override { return bounded_; }
-  bool is_plain() const override { return bounded_; }
+  void* create() const override { return new RawData; }
+  void destroy(void* data) const override { delete static_cast<RawData*>(data); }
+  bool plain() const override { return bounded_; }
 
  private:
-  const bool bounded_;  // what shared memory asks for
+  static constexpr std::uint32_t kFirstGuess = 1024;      // memory grows with the samples
+  static constexpr std::uint32_t kMaxInPlace = 64 << 20;  // the size is not announced; a larger sample would be refused
+  const bool bounded_;                                    // what shared memory asks for
 };
 
 }  // namespace rtd::bus::fastdds

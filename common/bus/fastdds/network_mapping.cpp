@@ -2,19 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/network_mapping.hpp"
 
-#include <fastdds/rtps/attributes/ServerAttributes.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <algorithm>
 #include <atomic>
 #include <filesystem>
 #include <mutex>
 #include <span>
-#include <sstream>
 #include <utility>
 
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
@@ -22,13 +14,6 @@
 
 namespace rtd::bus::fastdds {
 namespace {
-
-namespace rtps = eprosima::fastrtps::rtps;
-namespace fastdds_rtps = eprosima::fastdds::rtps;
-using eprosima::fastdds::dds::DomainParticipantQos;
-using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
-using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::rtps::octet;
 
 constexpr std::uint32_t kMib = 1024 * 1024, kLargestDatagram = 65500;
 constexpr char kLoopback[] = "127.0.0.1", kAnyAddress[] = "0.0.0.0", kMulticastGroup[] = "239.255.0.1";
@@ -42,8 +27,8 @@ rtps::Locator_t udp_locator(const std::string& address, std::uint32_t port = 0) 
   return locator;
 }
 
-std::shared_ptr<SharedMemTransportDescriptor> shared_memory_transport(const BusOptions& options) {
-  auto transport = std::make_shared<SharedMemTransportDescriptor>();
+std::shared_ptr<transports::SharedMemTransportDescriptor> shared_memory_transport(const BusOptions& options) {
+  auto transport = std::make_shared<transports::SharedMemTransportDescriptor>();
   transport->segment_size(options.shm_segment_mib * kMib);
   transport->max_message_size(options.shm_segment_mib * kMib);
   return transport;
@@ -51,15 +36,15 @@ std::shared_ptr<SharedMemTransportDescriptor> shared_memory_transport(const BusO
 
 using OnProblem = std::function<void(const std::string&)>;
 
-class ScreeningDescriptor : public fastdds_rtps::ChainingTransportDescriptor {
+class ScreeningDescriptor : public transports::ChainingTransportDescriptor {
  public:
-  ScreeningDescriptor(std::shared_ptr<fastdds_rtps::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
+  ScreeningDescriptor(std::shared_ptr<transports::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
                       OnProblem problem)
       : ChainingTransportDescriptor(std::move(transport)), on_problem(std::move(problem)) {
     maxMessageSize = largest_sent;
   }
   std::uint32_t max_message_size() const override { return maxMessageSize; }
-  fastdds_rtps::TransportInterface* create_transport() const override;
+  transports::TransportInterface* create_transport() const override;
 
   const OnProblem on_problem;
 };
@@ -74,17 +59,13 @@ class ScreeningDescriptor : public fastdds_rtps::ChainingTransportDescriptor {
 ///
 /// Sends datagrams of at most `largest_sent` bytes and receives what the chained transport has room for: others, and
 /// Cyclone DDS now and then, send larger ones than we do, whose end Fast DDS would cut off.
-class ScreeningTransport : public fastdds_rtps::ChainingTransport {
+class ScreeningTransport : public PassingTransport {
  public:
   explicit ScreeningTransport(const ScreeningDescriptor& descriptor)
-      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+      : PassingTransport(descriptor), descriptor_(descriptor) {}
 
-  fastdds_rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
-  bool send(rtps::SenderResource* sender, const octet* data, std::uint32_t size, rtps::LocatorsIterator* begin,
-            rtps::LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override {
-    return sender->send(data, size, begin, end, timeout);
-  }
-  void receive(fastdds_rtps::TransportReceiverInterface* next, const octet* data, std::uint32_t size,
+  transports::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+  void receive(transports::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     std::unique_lock one_at_a_time(mutex_);
     if (screen_.passes(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
@@ -101,7 +82,7 @@ class ScreeningTransport : public fastdds_rtps::ChainingTransport {
   std::mutex mutex_;
 };
 
-fastdds_rtps::TransportInterface* ScreeningDescriptor::create_transport() const {
+transports::TransportInterface* ScreeningDescriptor::create_transport() const {
   return new ScreeningTransport(*this);
 }
 
@@ -123,8 +104,8 @@ std::uint32_t datagram_bytes(const BusOptions& options) {
   return std::max(asked, static_cast<std::uint32_t>(std::min<std::uint64_t>(handshake, kLargestDatagram)));
 }
 
-std::shared_ptr<UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
-  auto transport = std::make_shared<UDPv4TransportDescriptor>();
+std::shared_ptr<transports::UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
+  auto transport = std::make_shared<transports::UDPv4TransportDescriptor>();
   transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
   transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
   transport->maxMessageSize = kLargestDatagram;  // to receive
@@ -161,24 +142,20 @@ void find_by_announcements(const BusOptions& options, rtps::BuiltinAttributes& b
 
 void find_by_server(const BusOptions& options, DiscoveryScope scope, rtps::BuiltinAttributes& builtin) {
   const HostAddress host = resolve_host(options.network.discovery_server, "--discovery-server");
-  rtps::RemoteServerAttributes server;
-  server.ReadguidPrefix(kServerGuidPrefix);
-  server.metatrafficUnicastLocatorList.push_back(udp_locator(host.address, host.port));
   builtin.discovery_config.discoveryProtocol =
-      scope == DiscoveryScope::kAll ? rtps::DiscoveryProtocol_t::SUPER_CLIENT : rtps::DiscoveryProtocol_t::CLIENT;
-  builtin.discovery_config.m_DiscoveryServers.push_back(server);
+      scope == DiscoveryScope::kAll ? DiscoveryProtocol::SUPER_CLIENT : DiscoveryProtocol::CLIENT;
+  add_discovery_server(builtin, udp_locator(host.address, host.port), kServerGuidPrefix);
   builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress));
 }
 
 }  // namespace
 
-rtps::GuidPrefix_t server_prefix() {
-  rtps::GuidPrefix_t prefix;
-  std::istringstream(kServerGuidPrefix) >> prefix;
-  return prefix;
+const ParticipantId& server_id() {
+  static constexpr ParticipantId kId = {0x44, 0x53, 0x00, 0x5f, 0x45, 0x50, 0x52, 0x4f, 0x53, 0x49, 0x4d, 0x41};
+  return kId;
 }
 
-void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, DomainParticipantQos& qos) {
+void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, dds::DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(

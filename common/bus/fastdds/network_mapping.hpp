@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
-
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/fastdds/versions/vendor.hpp"
 #include "common/bus/host/host_checks.hpp"
 
 namespace rtd::bus::fastdds {
@@ -18,9 +17,9 @@ enum class DiscoveryScope {
 /// Transports and discovery of NetworkOptions. Samples of a host go through shared memory in every profile; UDP on
 /// loopback and the chosen interfaces is for discovery and for other hosts, cut to max_datagram_bytes.
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
-                 eprosima::fastdds::dds::DomainParticipantQos& qos);
+                 dds::DomainParticipantQos& qos);
 
 /// Whose Discovery Server is asked: that of `fast-discovery-server -i 0`.
-eprosima::fastrtps::rtps::GuidPrefix_t server_prefix();
+const ParticipantId& server_id();
 
 }  // namespace rtd::bus::fastdds

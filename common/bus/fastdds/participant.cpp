@@ -11,7 +11,6 @@
 #include <string>
 #include <utility>
 
-#include <fastrtps/xmlparser/XMLProfileManager.h>
 #include <fastdds/dds/log/Log.hpp>
 #include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
@@ -45,9 +44,7 @@ void configure_library_once() {
     dds::Log::ClearConsumers();
     dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
-    eprosima::fastrtps::LibrarySettingsAttributes settings;
-    settings.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-    eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(settings);
+    turn_off_direct_calls();
   });
 }
 
@@ -123,14 +120,14 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first,
                                                  const std::filesystem::path& shm_dir) {
-  const eprosima::fastrtps::rtps::PortParameters ports;
+  const rtps::PortParameters ports;
   const std::uint32_t ids = participant_ids(domain);
   for (std::uint32_t step = 0; step < ids; ++step) {
     const std::uint32_t id = (first + step) % ids;
     const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
     const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
     std::error_code unreadable;
-    if (!std::filesystem::exists(shm_dir / ("fastrtps_port" + std::to_string(port)), unreadable)) return id;
+    if (!std::filesystem::exists(shm_dir / (std::string(kShmPrefix) + "_port" + std::to_string(port)), unreadable)) return id;
   }
   return std::nullopt;
 }

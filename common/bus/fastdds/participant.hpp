@@ -20,8 +20,6 @@
 
 namespace rtd::bus::fastdds {
 
-namespace dds = eprosima::fastdds::dds;
-
 /// Participant ids choose port numbers. A process must not get the shared-memory port of one that was killed: others
 /// keep that port in memory as long as they run, and may write to it in vain, for seconds or for good. So the id
 /// follows the process id, and the next one is taken while there is a port of that number in `shm_dir`, in use or left

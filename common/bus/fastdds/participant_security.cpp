@@ -12,31 +12,24 @@
 namespace rtd::bus::fastdds {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
+using Vendor = std::array<std::uint8_t, 2>;
 
-std::string vendor_name(const rtps::VendorId_t& id) {
-  if (id == rtps::VendorId_t{0x01, 0x10}) return "Cyclone DDS";
-  if (id == rtps::VendorId_t{0x01, 0x01}) return "RTI Connext DDS";
-  if (id == rtps::VendorId_t{0x01, 0x03}) return "OpenDDS";
+std::string vendor_name(const Vendor& id) {
+  if (id == Vendor{0x01, 0x10}) return "Cyclone DDS";
+  if (id == Vendor{0x01, 0x01}) return "RTI Connext DDS";
+  if (id == Vendor{0x01, 0x03}) return "OpenDDS";
   std::ostringstream text;
   text << "another DDS (vendor " << std::hex << int{id[0]} << '.' << int{id[1]} << ')';
   return text.str();
 }
 
-std::string name_of(const rtps::ParticipantProxyData& participant) {
-  std::ostringstream text;
-  if (participant.m_participantName.size() > 0) text << "'" << participant.m_participantName.c_str() << "' ";
-  text << participant.m_guid.guidPrefix;
-  return text.str();
-}
-
-bool has_certificate(const rtps::ParticipantProxyData& participant) {
-  return !participant.identity_token_.class_id().empty();
+std::string name_of(const FoundParticipant& participant) {
+  return (participant.name.empty() ? "" : "'" + participant.name + "' ") + to_string(participant.id);
 }
 
 }  // namespace
 
-void map_security(const SecurityOptions& security, eprosima::fastdds::dds::DomainParticipantQos& qos) {
+void map_security(const SecurityOptions& security, dds::DomainParticipantQos& qos) {
   if (!security.enabled()) return;
   const security::EnclaveFiles files = security::KeystoreLayout{security.keystore}.enclave(security.enclave);
   const auto add = [&qos](const std::string& name, const std::string& value) {
@@ -70,29 +63,25 @@ void hide_shared_memory() {
 SecurityWatch::SecurityWatch(const BusOptions& options)
     : domain_(options.domain), on_problem_(options.on_problem ? options.on_problem : [](const std::string&) {}) {}
 
-void SecurityWatch::discovered(const rtps::ParticipantDiscoveryInfo& info) {
-  using Info = rtps::ParticipantDiscoveryInfo;
-  const rtps::ParticipantProxyData& participant = info.info;
+void SecurityWatch::discovered(const FoundParticipant& participant) {
+  constexpr Vendor kFastDds = {0x01, 0x0f};
   const std::lock_guard lock(mutex_);
-  if (info.status == Info::REMOVED_PARTICIPANT || info.status == Info::DROPPED_PARTICIPANT) {
-    names_.erase(participant.m_guid.guidPrefix);
+  if (participant.change == FoundParticipant::Change::kGone) {
+    names_.erase(participant.id);
     return;
   }
-  const auto [known, is_new] = names_.try_emplace(participant.m_guid.guidPrefix, name_of(participant));
+  const auto [known, is_new] = names_.try_emplace(participant.id, name_of(participant));
   if (!is_new) return;
-  if (participant.m_VendorId != rtps::c_VendorId_eProsima) {
-    on_problem_(other_vendor_problem(domain_, std::exchange(known->second, {}), vendor_name(participant.m_VendorId)));
-  } else if (!has_certificate(participant)) {
+  if (participant.vendor != kFastDds) {
+    on_problem_(other_vendor_problem(domain_, std::exchange(known->second, {}), vendor_name(participant.vendor)));
+  } else if (!participant.secured) {
     on_problem_(not_secured_problem(domain_, std::exchange(known->second, {})));
   }
 }
 
-void SecurityWatch::authenticated(const rtps::ParticipantAuthenticationInfo& info) {
-  if (info.status == rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT) return;
+void SecurityWatch::refused(const ParticipantId& participant) {
   const std::lock_guard lock(mutex_);
-  std::ostringstream id;
-  id << info.guid.guidPrefix;
-  const auto [known, is_new] = names_.try_emplace(info.guid.guidPrefix, id.str());
+  const auto [known, is_new] = names_.try_emplace(participant, to_string(participant));
   if (!known->second.empty()) on_problem_(refused_problem(domain_, std::exchange(known->second, {})));
 }
 

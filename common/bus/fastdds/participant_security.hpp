@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-
-#include <fastdds/dds/domain/qos/DomainParticipantQos.hpp>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <string>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/fastdds/versions/vendor.hpp"
 
 namespace rtd::bus::fastdds {
 
 /// The enclave's files as Fast DDS's built-in plugins want them. No change without security.
-void map_security(const SecurityOptions& security, eprosima::fastdds::dds::DomainParticipantQos& qos);
+void map_security(const SecurityOptions& security, dds::DomainParticipantQos& qos);
 
 /// Leaves the shared memory that this process uses to its user. Fast DDS lets every user of the host read it, and the
 /// raw frames in it are not encrypted.
@@ -25,14 +23,14 @@ void hide_shared_memory();
 class SecurityWatch {
  public:
   explicit SecurityWatch(const BusOptions& options);
-  void discovered(const eprosima::fastrtps::rtps::ParticipantDiscoveryInfo& info);
-  void authenticated(const eprosima::fastrtps::rtps::ParticipantAuthenticationInfo& info);
+  void discovered(const FoundParticipant& participant);
+  void refused(const ParticipantId& participant);
 
  private:
   const std::uint32_t domain_;
   const std::function<void(const std::string&)> on_problem_;
   std::mutex mutex_;
-  std::map<eprosima::fastrtps::rtps::GuidPrefix_t, std::string> names_;  ///< of those not reported yet; else empty
+  std::map<ParticipantId, std::string> names_;  ///< of those not reported yet; else empty
 };
 
 }  // namespace rtd::bus::fastdds

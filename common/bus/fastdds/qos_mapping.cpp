@@ -7,11 +7,6 @@
 namespace rtd::bus::fastdds {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::c_TimeInfinite;
-using eprosima::fastrtps::Duration_t;
-
 Duration_t milliseconds(int ms) {
   return {ms / 1000, static_cast<std::uint32_t>(ms % 1000) * 1'000'000U};
 }
@@ -46,7 +41,7 @@ Qos endpoint_qos(const QosSettings& settings, bool plain) {
   qos.ownership().kind = dds::SHARED_OWNERSHIP_QOS;
   qos.destination_order().kind = dds::BY_RECEPTION_TIMESTAMP_DESTINATIONORDER_QOS;
   if (settings.data_sharing && plain) {
-    qos.data_sharing().automatic();
+    share_memory(qos.data_sharing());
   } else {
     qos.data_sharing().off();
   }
@@ -85,16 +80,15 @@ dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain) {
   }
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
   qos.representation().m_value = {dds::XCDR_DATA_REPRESENTATION};
-  qos.reliable_writer_qos().times.initialHeartbeatDelay = milliseconds(1);  // where Cyclone's volatile readers begin
-  qos.reliable_writer_qos().times.heartbeatPeriod = milliseconds(kHeartbeatPeriodMs);
-  qos.reliable_writer_qos().times.nackResponseDelay = milliseconds(kResponseDelayMs);
+  // Cyclone's volatile readers begin with the first heartbeat.
+  set_timing(qos, milliseconds(1), milliseconds(kHeartbeatPeriodMs), milliseconds(kResponseDelayMs));
   return qos;
 }
 
 dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain) {
   auto qos = endpoint_qos<dds::DataReaderQos>(settings, plain);
-  qos.type_consistency().representation.m_value = {dds::XCDR_DATA_REPRESENTATION};
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = milliseconds(kResponseDelayMs);
+  set_representations(qos, {dds::XCDR_DATA_REPRESENTATION});
+  set_timing(qos, milliseconds(kResponseDelayMs));
   return qos;
 }
 
@@ -107,7 +101,7 @@ std::string name_of(dds::QosPolicyId_t id) {
 dds::DataReaderQos raw_reader_qos(const RawReaderOptions& options) {
   auto qos = reader_qos({options.depth, options.transient_local, options.in_place, 0, 0}, options.in_place);
   set_reliability(qos.reliability(), options.reliable);
-  qos.type_consistency().representation.m_value = {dds::XCDR_DATA_REPRESENTATION, dds::XCDR2_DATA_REPRESENTATION};
+  set_representations(qos, {dds::XCDR_DATA_REPRESENTATION, dds::XCDR2_DATA_REPRESENTATION});
   return qos;
 }
 
@@ -127,21 +121,20 @@ dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options) {
   return qos;
 }
 
-TopicWriter to_topic_writer(const eprosima::fastrtps::rtps::WriterProxyData& data) {
-  const auto& offered = data.m_qos;
+TopicWriter to_topic_writer(const PublicationData& data) {
   TopicWriter writer;
-  writer.id = to_writer_id(data.guid());
-  writer.topic.name = data.topicName().to_string();
-  writer.topic.type = data.typeName().to_string();
-  writer.topic.keyed = data.topicKind() == eprosima::fastrtps::rtps::WITH_KEY;
-  writer.user_data.assign(offered.m_userData.begin(), offered.m_userData.end());
-  writer.shared_memory = !offered.data_sharing.domain_ids().empty();
-  writer.qos.reliable = offered.m_reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
-  writer.qos.durability = static_cast<RawQos::Durability>(offered.m_durability.kind);
-  writer.qos.deadline_ns = nanoseconds(offered.m_deadline.period);
-  writer.qos.lifespan_ns = nanoseconds(offered.m_lifespan.duration);
-  writer.qos.liveliness = static_cast<RawQos::Liveliness>(offered.m_liveliness.kind);
-  writer.qos.liveliness_lease_ns = nanoseconds(offered.m_liveliness.lease_duration);
+  writer.id = to_writer_id(data.guid);
+  writer.topic.name = data.topic_name.to_string();
+  writer.topic.type = data.type_name.to_string();
+  writer.topic.keyed = data.topic_kind == rtps::WITH_KEY;
+  writer.user_data.assign(data.user_data.begin(), data.user_data.end());
+  writer.shared_memory = !data.data_sharing.domain_ids().empty();
+  writer.qos.reliable = data.reliability.kind == dds::RELIABLE_RELIABILITY_QOS;
+  writer.qos.durability = static_cast<RawQos::Durability>(data.durability.kind);
+  writer.qos.deadline_ns = nanoseconds(data.deadline.period);
+  writer.qos.lifespan_ns = nanoseconds(data.lifespan.duration);
+  writer.qos.liveliness = static_cast<RawQos::Liveliness>(data.liveliness.kind);
+  writer.qos.liveliness_lease_ns = nanoseconds(data.liveliness.lease_duration);
   return writer;
 }
 

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/rtps/builtin/data/WriterProxyData.h>
-
-#include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
-#include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <string>
 
+#include "common/bus/fastdds/versions/vendor.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/ros2/type_description.hpp"
 
@@ -15,12 +12,12 @@ namespace rtd::bus::fastdds {
 
 /// Every policy is set explicitly: the defaults of the vendors differ from each other and from DDS.
 /// `plain`: the type has a fixed size.
-eprosima::fastdds::dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain);
-eprosima::fastdds::dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain);
+dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain);
+dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain);
 
 /// Asks for nothing that would keep a writer from matching: no deadline, no liveliness, any data representation.
-eprosima::fastdds::dds::DataReaderQos raw_reader_qos(const RawReaderOptions& options);
-eprosima::fastdds::dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
+dds::DataReaderQos raw_reader_qos(const RawReaderOptions& options);
+dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
 
 /// With the type's hash in the user data, for ROS 2 (common/ros2/type_description.hpp).
 template <class Qos>
@@ -31,9 +28,6 @@ Qos with_type_hash(Qos qos, const std::string& dds_type) {
 }
 
 /// DDS name of a policy, e.g. "RELIABILITY".
-std::string name_of(eprosima::fastdds::dds::QosPolicyId_t id);
-
-/// What discovery finds of a writer; `own` is not set.
-TopicWriter to_topic_writer(const eprosima::fastrtps::rtps::WriterProxyData& data);
+std::string name_of(dds::QosPolicyId_t id);
 
 }  // namespace rtd::bus::fastdds

@@ -73,7 +73,7 @@ struct Held {
     descriptors = std::distance(std::filesystem::directory_iterator(process / "fd"), {});
     std::ifstream maps(process / "maps");
     for (std::string line; std::getline(maps, line);) {
-      if (line.find("fastrtps_port") == std::string::npos) ++mappings;
+      if (line.find("fast") == std::string::npos || line.find("_port") == std::string::npos) ++mappings;
     }
   }
 };

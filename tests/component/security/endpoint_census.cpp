@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/component/security/endpoint_census.hpp"
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-#include <fastdds/rtps/reader/ReaderDiscoveryInfo.h>
-#include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
-
 namespace rtd::bus {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 BusOptions EndpointCensus::options(std::uint32_t domain) {
   BusOptions options;
@@ -29,19 +23,19 @@ std::map<std::string, EndpointCensus::Topics> EndpointCensus::by_participant() c
   return all;
 }
 
-void EndpointCensus::on_participant_discovery(fastdds::dds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& info) {
+void EndpointCensus::found(const fastdds::FoundParticipant& participant) {
   const std::lock_guard lock(mutex_);
-  names_.try_emplace(info.info.m_guid.guidPrefix, info.info.m_participantName.c_str());
+  names_.try_emplace(participant.id, participant.name);
 }
 
-void EndpointCensus::on_publisher_discovery(fastdds::dds::DomainParticipant*, rtps::WriterDiscoveryInfo&& info) {
+void EndpointCensus::found(const TopicWriter& writer, bool /*gone*/) {
   const std::lock_guard lock(mutex_);
-  topics_[info.info.guid().guidPrefix].writes.insert(info.info.topicName().c_str());
+  topics_[participant_of(writer.id)].writes.insert(writer.topic.name);
 }
 
-void EndpointCensus::on_subscriber_discovery(fastdds::dds::DomainParticipant*, rtps::ReaderDiscoveryInfo&& info) {
+void EndpointCensus::found(const TopicReader& reader, bool /*gone*/) {
   const std::lock_guard lock(mutex_);
-  topics_[info.info.guid().guidPrefix].reads.insert(info.info.topicName().c_str());
+  topics_[participant_of(reader.id)].reads.insert(reader.topic.name);
 }
 
 }  // namespace rtd::bus

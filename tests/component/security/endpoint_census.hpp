@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <map>
 #include <mutex>
 #include <set>
@@ -13,7 +12,7 @@
 namespace rtd::bus {
 
 /// Who opens which writers and readers in a domain, by participant name: "rtd-slam" writes "rtd/tracking".
-class EndpointCensus : private fastdds::dds::DomainParticipantListener {
+class EndpointCensus : private fastdds::DiscoveryAdapter {
  public:
   explicit EndpointCensus(std::uint32_t domain) : participant_(options(domain), read_host_limits(), &writers_) {
     participant_.observe(*this);
@@ -26,18 +25,14 @@ class EndpointCensus : private fastdds::dds::DomainParticipantListener {
   std::map<std::string, Topics> by_participant() const;
 
  private:
-  using Guid = eprosima::fastrtps::rtps::GuidPrefix_t;
   static BusOptions options(std::uint32_t domain);
-  void on_participant_discovery(fastdds::dds::DomainParticipant*,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo&& info) override;
-  void on_publisher_discovery(fastdds::dds::DomainParticipant*,
-                              eprosima::fastrtps::rtps::WriterDiscoveryInfo&& info) override;
-  void on_subscriber_discovery(fastdds::dds::DomainParticipant*,
-                               eprosima::fastrtps::rtps::ReaderDiscoveryInfo&& info) override;
+  void found(const fastdds::FoundParticipant& participant) override;
+  void found(const TopicWriter& writer, bool gone) override;
+  void found(const TopicReader& reader, bool gone) override;
 
   mutable std::mutex mutex_;
-  std::map<Guid, std::string> names_;
-  std::map<Guid, Topics> topics_;
+  std::map<ParticipantId, std::string> names_;
+  std::map<ParticipantId, Topics> topics_;
   EndpointRegistry writers_;          // with it, everything is discovered
   fastdds::Participant participant_;  // last: calls the others
 };

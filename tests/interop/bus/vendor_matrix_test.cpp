@@ -107,8 +107,10 @@ class VendorMatrix : public testing::TestWithParam<std::tuple<std::string, std::
     options.participant_name = "interop-test";
     return connect(options);
   }
+  /// RTD_INTEROP_PEER: another program, e.g. one that starts the peer of another system (docs/platforms.md).
   std::vector<std::string> peer(const char* role) const {
-    return {INTEROP_PEER_PATH, std::get<0>(GetParam()), std::to_string(domain), role};
+    const char* other = std::getenv("RTD_INTEROP_PEER");
+    return {other != nullptr ? other : INTEROP_PEER_PATH, std::get<0>(GetParam()), std::to_string(domain), role};
   }
 };
 

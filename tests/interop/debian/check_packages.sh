@@ -39,8 +39,10 @@ holds() { # PACKAGE FILE...
   done
 }
 
-version="$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' "$build/CMakeCache.txt")"
-[ -n "$version" ] || fail "$build/CMakeCache.txt names no version: is it a build folder?"
+version="$(sed -n 's/^set(CPACK_PACKAGE_VERSION "\(.*\)")$/\1/p' "$build/CPackConfig.cmake")"
+[ -n "$version" ] || fail "$build/CPackConfig.cmake names no version: is it a build folder?"
+. /etc/os-release
+[[ "$version" = *"+${ID:0:3}$VERSION_ID" ]] || fail "version $version does not name this distribution"
 make_packages "$version" "$work/1"
 holds rtd-slam usr/bin/rtd usr/bin/rtd-slam usr/bin/rtd-link usr/lib/systemd/system/rtd-slam@.service \
   usr/lib/systemd/system/rtd-slam@camera.service.d/devices.conf usr/lib/sysusers.d/rtd-slam.conf \

@@ -26,7 +26,7 @@ class ParticipantId : public testing::Test {
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
   void add_port(std::uint32_t id) {
-    std::ofstream(folder_ / ("fastrtps_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id)));
+    std::ofstream(folder_ / (std::string(kShmPrefix) + "_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id)));
   }
   fs::path folder_ = fs::temp_directory_path() / ("rtd_participant_id_" + std::to_string(getpid()));
 };
