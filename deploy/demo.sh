@@ -15,7 +15,7 @@ if [ "${1:-}" = "--help" ]; then
 fi
 
 "$root/deploy/setup.sh" --product
-echo "demo: building into build/release (first time: about five minutes on two cores)"
+echo "demo: building into build/release"
 tests=OFF
 grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON
 build_release "$tests" --target rtd_demo

@@ -14,14 +14,33 @@ if [ -z "${RTD_MODEL_DIR:-}" ] && [ -d "$root/../shared/models" ]; then
 fi
 
 # Configures and builds into build/release. $1: "ON" to build the tests too; the rest is passed to `cmake --build`.
+# RTD_WERROR=ON makes warnings errors.
 build_release() {
   local tests="$1"
   shift
   mkdir -p "$root/build"
   cmake -S "$root" -B "$root/build/release" -G Ninja -DCMAKE_BUILD_TYPE=Release -DRTD_BUILD_TESTS="$tests" \
-    -DRTD_BUILD_BENCH="$tests" -DRTD_UNITY_BUILD=ON >"$root/build/configure.log" 2>&1 || {
+    -DRTD_BUILD_BENCH="$tests" -DRTD_UNITY_BUILD=ON -DRTD_WERROR="${RTD_WERROR:-OFF}" >"$root/build/configure.log" 2>&1 || {
     cat "$root/build/configure.log" >&2
     return 1
   }
-  cmake --build "$root/build/release" "$@"
+  local began=$SECONDS
+  cmake --build "$root/build/release" "$@" | show_progress
+  echo "$(basename "$0" .sh): built in $((SECONDS - began)) s"
+}
+
+# Passes on what ninja prints, but for its steps: of these it says how many are done and, by the pace of those so far,
+# how long the rest will take.
+show_progress() {
+  local began=$SECONDS next=$((SECONDS + 15)) line seconds
+  while IFS= read -r line; do
+    if ! [[ "$line" =~ ^\[([0-9]+)/([0-9]+)\] ]]; then
+      printf '%s\n' "$line"
+    elif [ "$SECONDS" -ge "$next" ] && [ "${BASH_REMATCH[1]}" -ge 10 ]; then
+      next=$((SECONDS + 15))
+      seconds=$(((SECONDS - began) * (BASH_REMATCH[2] - BASH_REMATCH[1]) / BASH_REMATCH[1]))
+      echo "$(basename "$0" .sh): ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps built, about" \
+        "$((seconds / 60)) min $((seconds % 60)) s to go"
+    fi
+  done
 }

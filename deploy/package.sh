@@ -18,7 +18,7 @@ elif [ $# -gt 0 ]; then
 fi
 
 "$root/deploy/setup.sh" --product --packaging
-echo "package: building into build/release (first time: about seven minutes on two cores)"
+echo "package: building into build/release"
 tests=OFF
 grep -qs '^RTD_BUILD_TESTS:BOOL=ON' "$root/build/release/CMakeCache.txt" && tests=ON
 build_release "$tests" --target rtd_packages

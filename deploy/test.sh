@@ -27,10 +27,9 @@ list_skipped() {
 
 started=$SECONDS
 "$root/deploy/setup.sh" --no-models
-echo "test: building into build/release (first time: about 10 minutes on two cores)"
+echo "test: building into build/release"
 build_release ON
 built=$SECONDS
-echo "test: built in $((built - started)) s"
 
 status=0
 ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "$@" || status=$?

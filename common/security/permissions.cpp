@@ -37,18 +37,18 @@ std::vector<std::string> topics_of(const XMLElement& rule, const char* action) {
   return topics;
 }
 
-/// The children along the path; throws where one is missing.
-const XMLElement& descend(const XMLElement& from, const std::vector<const char*>& path, const std::string& origin) {
+/// The last of the children along the path, never null; throws where one is missing.
+const XMLElement* descend(const XMLElement& from, const std::vector<const char*>& path, const std::string& origin) {
   const XMLElement* element = &from;
   for (const char* name : path) {
     element = element->FirstChildElement(name);
     if (element == nullptr) throw SecurityError(fmt::format("{}: <{}> is missing", origin, name));
   }
-  return *element;
+  return element;
 }
 
 std::string text_of(const XMLElement& parent, const std::vector<const char*>& path, const std::string& origin) {
-  const char* const text = descend(parent, path, origin).GetText();
+  const char* const text = descend(parent, path, origin)->GetText();
   return text == nullptr ? std::string() : text;
 }
 
@@ -60,7 +60,7 @@ std::int64_t from_utc(const std::string& text, const std::string& origin) {
 }
 
 DomainRange domains_of(const XMLElement& rule, const std::string& origin) {
-  const XMLElement& domains = descend(rule, {"domains"}, origin);
+  const XMLElement& domains = *descend(rule, {"domains"}, origin);
   const auto number = [&](std::vector<const char*> path) { return std::atoi(text_of(domains, path, origin).c_str()); };
   if (domains.FirstChildElement("id_range")) return {number({"id_range", "min"}), number({"id_range", "max"})};
   return {number({"id"}), number({"id"})};
@@ -133,12 +133,12 @@ Permissions permissions_from_xml(const std::string& xml, const std::string& orig
   tinyxml2::XMLDocument document;
   if (document.Parse(xml.data(), xml.size()) != tinyxml2::XML_SUCCESS || document.RootElement() == nullptr)
     throw SecurityError(origin + " is not XML: " + document.ErrorStr());
-  const XMLElement& grant = descend(*document.RootElement(), {"permissions", "grant"}, origin);
+  const XMLElement& grant = *descend(*document.RootElement(), {"permissions", "grant"}, origin);
   Permissions permissions;
   permissions.subject = text_of(grant, {"subject_name"}, origin);
   permissions.validity = {from_utc(text_of(grant, {"validity", "not_before"}, origin), origin),
                           from_utc(text_of(grant, {"validity", "not_after"}, origin), origin)};
-  const XMLElement& rule = descend(grant, {"allow_rule"}, origin);
+  const XMLElement& rule = *descend(grant, {"allow_rule"}, origin);
   permissions.domains = domains_of(rule, origin);
   for (const XMLElement* next = &rule; next; next = next->NextSiblingElement("allow_rule")) {
     for (std::string& topic : topics_of(*next, "publish")) permissions.topics.publish.push_back(std::move(topic));
