@@ -16,8 +16,6 @@
 #endif
 
 namespace rtd::filter {
-
-#if defined(__SSE4_1__)
 namespace {
 
 constexpr int kBlock = 8, kLoaded = 16;  // pixels made at a time, and pixels looked at for them
@@ -72,6 +70,7 @@ std::vector<Block> blocks_of(const std::vector<Between>& columns, int from_colum
   return blocks;
 }
 
+#if defined(__SSE4_1__)
 template <class Number>
 __m128i load(const Number* from) {
   return _mm_loadu_si128(reinterpret_cast<const __m128i*>(from));
@@ -88,6 +87,19 @@ void resample(const std::uint8_t* row, const std::vector<Block>& blocks, std::in
     _mm_storeu_si128(reinterpret_cast<__m128i*>(to + block.begin), sums);
   }
 }
+#else
+/// The same numbers without SSE.
+void resample(const std::uint8_t* row, const std::vector<Block>& blocks, std::int16_t* to) {
+  for (const Block& block : blocks) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const std::uint8_t* const seen = row + block.looked_at;
+      const int sum = seen[block.picked[2 * i]] * block.weights[2 * i] +
+                      seen[block.picked[2 * i + 1]] * block.weights[2 * i + 1];
+      to[static_cast<std::size_t>(block.begin) + i] = static_cast<std::int16_t>(sum >> 4);
+    }
+  }
+}
+#endif
 
 RTD_INLINE void blend(const std::int16_t* __restrict first, const std::int16_t* __restrict second, const Between& row,
                       int columns, std::uint8_t* __restrict to) {
@@ -134,13 +146,5 @@ void shrink(const cv::Mat& from, cv::Size size, cv::Mat& to) {
     blend_rows(at(row.first), at(row.first + 1), row, size.width, to.ptr(y));
   }
 }
-
-#else
-
-void shrink(const cv::Mat& from, cv::Size size, cv::Mat& to) {
-  cv::resize(from, to, size, 0, 0, cv::INTER_LINEAR);
-}
-
-#endif
 
 }  // namespace rtd::filter
