@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+# SPDX-License-Identifier: Apache-2.0
+#
+# Builds for arm64 on another machine, in a chroot with Debian's cross compiler and arm64 packages, and runs the tests
+# with qemu's emulation of single programs.
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+# shellcheck source=deploy/chroot.sh
+. "$root/deploy/chroot.sh"
+
+usage() {
+  cat <<'TEXT'
+Usage: deploy/cross.sh bookworm|trixie [--keep FOLDER] [build [TARGET...] | test [CTEST ARGUMENTS] | package]
+  build          builds the targets (default: all) for arm64
+  test           builds all, runs the tests under qemu (default: -L unit), then one clip in lockstep
+  package        builds the Debian packages for arm64
+  --keep FOLDER  the system with its build is in this folder: made where there is none, and kept
+Needs root and debootstrap. Without a command: test.
+TEXT
+}
+
+# The packages of setup.sh: libraries for arm64, programs for this machine.
+packages_for() {
+  local package
+  inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-|pocl-|nftables|iproute2|fastdds-tools)' |
+    while read -r package; do
+      if [[ "$package" == *-dev ]] &&
+        ! inside "$place" apt-cache show --no-all-versions "$package" | grep -q '^Architecture: all$'; then
+        package="$package:arm64"
+      fi
+      echo "$package"
+    done
+}
+
+install_cross() {
+  local began=$SECONDS
+  mapfile -t packages < <(
+    inside "$place" dpkg --add-architecture arm64
+    inside "$place" apt-get update -qq
+    packages_for
+  )
+  inside "$place" apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 qemu-user-static ccache \
+    python3-minimal dpkg-dev file "${packages[@]}" >"$work/apt.log" 2>&1 || {
+    tail -5 "$work/apt.log" >&2
+    fail "the packages could not be installed"
+  }
+  touch "$place/root/installed"
+  since "$began" "cross compiler and packages installed"
+}
+
+build() {
+  local began=$SECONDS
+  inside "$place" cmake -S . -B build/arm64 -G Ninja -DCMAKE_TOOLCHAIN_FILE=deploy/arm64.cmake \
+    -DCMAKE_BUILD_TYPE=Release -DRTD_BUILD_TESTS=ON -DRTD_BUILD_BENCH=OFF -DRTD_UNITY_BUILD=ON \
+    -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >"$work/configure.log" 2>&1 || {
+    tail -20 "$work/configure.log" >&2
+    fail "cmake failed"
+  }
+  inside "$place" cmake --build build/arm64 ${1:+--target "$@"}
+  since "$began" "built for arm64"
+}
+
+# Programs for arm64 start by themselves, also those that a program starts, until the end of this script.
+emulate() {
+  local entries=/proc/sys/fs/binfmt_misc
+  [ -e "$entries/register" ] || mount -t binfmt_misc binfmt_misc "$entries" || fail "this kernel has no binfmt_misc"
+  [ ! -e "$entries/qemu-aarch64" ] || return 0
+  mount -t binfmt_misc binfmt_misc "$place$entries"
+  inside "$place" sh -c 'printf "%s" ":rtd-aarch64:M::\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00:\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff:/usr/bin/qemu-aarch64-static:F" >/proc/sys/fs/binfmt_misc/register'
+  trap 'echo -1 >/proc/sys/fs/binfmt_misc/rtd-aarch64; unmount_systems' EXIT
+}
+
+run_tests() {
+  local began=$SECONDS status=0
+  [ $# -gt 0 ] || set -- -L unit
+  emulate
+  inside "$place" ctest --test-dir build/arm64 -j "$(nproc)" --timeout 1200 --output-on-failure "$@" || status=$?
+  since "$began" "tests under qemu"
+  began=$SECONDS
+  inside "$place" build/arm64/bin/rtd run --source 'synthetic:walk_xyz?frames=40' --out /root/clip-$$ --detector off --quiet
+  since "$began" "40 frames in lockstep under qemu"
+  sha256sum "$place/root/clip-$$/trajectory.txt"
+  return "$status"
+}
+
+system="${1:-}"
+case "$system" in
+  --help | -h) usage && exit 0 ;;
+  bookworm | trixie) ;;
+  *) usage >&2 && exit 2 ;;
+esac
+require_chroot
+in_namespace "$0" "$@"
+shift
+work="$(mktemp -d "${TMPDIR:-/var/tmp}/rtd-cross.XXXXXX")"
+trap unmount_systems EXIT
+place="$work/system"
+if [ "${1:-}" = --keep ]; then
+  [ $# -gt 1 ] || fail "--keep needs a folder" 2
+  place="$(realpath "$2")"
+  shift 2
+fi
+[ -e "$place/etc/debian_version" ] || install_system "$place" "$system" "$(dpkg --print-architecture)"
+copy_project "$place"
+mount_system "$place"
+[ -e "$place/root/installed" ] || install_cross
+command="${1:-test}"
+[ $# -eq 0 ] || shift
+case "$command" in
+  build) build "$@" ;;
+  test)
+    build
+    run_tests "$@"
+    ;;
+  package)
+    build rtd_packages
+    inside "$place" sh -c 'cd build/arm64 && cpack -G DEB >cpack.log 2>&1 || { tail -20 cpack.log >&2; exit 1; }'
+    ls -l "$place"/root/rtd-slam/build/arm64/packages/*.deb
+    ;;
+  *) usage >&2 && exit 2 ;;
+esac
