@@ -91,6 +91,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kPath.name, {"slam"}, kOnlookers},
       {kMapPoints.name, {"slam"}, kOnlookers},
       {kDensePoints.name, {"dense"}, kOnlookers},
+      {kMovingPoints.name, {"dense"}, kOnlookers},
       {kOccupancyGrid.name, {"dense"}, kOnlookers},
       {kDiagnostics.name, {"slam"}, kOnlookers},
       // Whatever is recorded can be played again; both work without types.

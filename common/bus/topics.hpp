@@ -45,6 +45,8 @@ inline constexpr Topic<msg::TFMessage> kTfStatic{"rt/tf_static", QosProfile::kKe
 inline constexpr Topic<msg::Path> kPath{"rt/slam/path", QosProfile::kPose};
 inline constexpr Topic<msg::PointCloud2> kMapPoints{"rt/slam/map_points", QosProfile::kLatched};
 inline constexpr Topic<msg::PointCloud2> kDensePoints{"rt/dense/points", QosProfile::kLatched};
+/// Some of the points of what moved, of the last frames.
+inline constexpr Topic<msg::PointCloud2> kMovingPoints{"rt/dense/moving_points", QosProfile::kLatched};
 inline constexpr Topic<msg::OccupancyGrid> kOccupancyGrid{"rt/map", QosProfile::kLatched};
 inline constexpr Topic<msg::DiagnosticArray> kDiagnostics{"rt/diagnostics", QosProfile::kPose};
 }  // namespace topics

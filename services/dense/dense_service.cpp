@@ -111,6 +111,7 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
       joiner_(std::make_shared<FrameJoiner>(
           FrameJoiner::Options{static_cast<std::uint64_t>(config.every), !config.without_masks})),
       cloud_writer_(runtime.bus.writer(bus::topics::kDensePoints)),
+      moving_writer_(runtime.bus.writer(bus::topics::kMovingPoints)),
       grid_writer_(runtime.bus.writer(bus::topics::kOccupancyGrid)),
       camera_(service::follow_source("camera", runtime)),
       filter_(service::follow_source("filter", runtime)),
@@ -210,10 +211,13 @@ void DenseService::count(const FusionReport& report) {
 void DenseService::publish_cloud() {
   const std::int64_t now_ns = service::monotonic_ns();
   const bool due = now_ns - published_ns_ >= std::int64_t{config_.publish_period_ms} * 1'000'000;
-  if (!due || totals_.frames == 0 || cloud_writer_.matched() == 0) return;
+  const bool read = cloud_writer_.matched() > 0, moving_read = moving_writer_.matched() > 0;
+  if (!due || totals_.frames == 0 || !(read || moving_read)) return;
   published_ns_ = now_ns;
-  const auto points = map_.cloud(static_cast<std::size_t>(config_.publish_max_points));
-  cloud_writer_.write(make_cloud(points, newest_stamp_ns_, runtime_.bus.frame(config_.map_frame)));
+  const std::string frame = runtime_.bus.frame(config_.map_frame);
+  const auto most = static_cast<std::size_t>(config_.publish_max_points);
+  if (read) cloud_writer_.write(make_cloud(map_.cloud(most), newest_stamp_ns_, frame));
+  if (moving_read) moving_writer_.write(make_cloud(map_.moving(), newest_stamp_ns_, frame));
 }
 
 /// Costs nothing without subscribers, and nothing while nothing changes.

@@ -125,6 +125,7 @@ class DenseService {
   std::optional<NavigationMap> navigation_;
   std::shared_ptr<FrameJoiner> joiner_;
   bus::Writer<msg::PointCloud2> cloud_writer_;
+  bus::Writer<msg::PointCloud2> moving_writer_;
   bus::Writer<msg::OccupancyGrid> grid_writer_;
   const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/launcher/core/completion/completion.hpp"
+#include "services/launcher/core/run/viewer_use.hpp"
 #include "services/launcher/core/settings/settings_list.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
@@ -123,11 +125,18 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
   return service::kRunFailed;
 }
 
-/// `rtd replay --viewer`: starts the viewer where the replay will publish, and takes the flag out of the arguments.
-/// The viewer ends with the replay. Returns why it cannot be started, else "".
+/// `rtd replay --viewer`: starts the viewer where the replay will publish, and replaces the option among the arguments
+/// by what the replay has to do for it. The viewer ends with the replay. Returns why it cannot be started, else "".
 std::string start_viewer(std::vector<std::string>& arguments) {
-  constexpr const char* kFlag = "--viewer";
-  if (std::erase(arguments, kFlag) == 0) return "";
+  const std::string flag = "--viewer";
+  const auto given = std::ranges::find_if(arguments, [&](const std::string& argument) {
+    return argument == flag || argument.starts_with(flag + '=');
+  });
+  if (given == arguments.end()) return "";
+  const std::string words = given->size() > flag.size() ? given->substr(flag.size() + 1) : "";
+  const std::optional<ViewerUse> use = parse_viewer_use(words);
+  if (!use) return viewer_use_problem(words);
+  arguments.erase(given);
   const std::string executable = process::find_executable("rtd-viewer");
   if (executable.empty()) return process::missing_executable("rtd-viewer");
   CLI::App app;
@@ -141,8 +150,10 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   } catch (const CLI::ParseError&) {
     return "";  // the replay says what is wrong
   }
+  if (use->waits) arguments.emplace_back("--wait-page");
+  if (use->stays) arguments.emplace_back("--hold");
   std::vector<std::string> command = service::to_command_line(sources);
-  command.insert(command.end(), {"--log-level", "warning"});
+  command.insert(command.end(), {"--log-level", "warning", "--open"});
   return process::start_companion(executable, command);
 }
 
@@ -198,8 +209,9 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--record", options.record,
                       "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
-  command->add_flag("--viewer", options.viewer,
-                    "Also show the run in the browser; the address is printed (--set viewer.port=...)");
+  command->add_flag("--viewer{stay}", options.viewer,
+                    "Also show the run in the browser, until Ctrl-C; a recording waits for the first page. "
+                    "--viewer=now does not wait, --viewer=exit ends with the run (--set viewer.port=...)");
   command->add_flag(
       "--dense", options.dense,
       "Also fuse a dense static map, with floor plan and voxel map: static_map.ply, map.pgm, map.yaml, map.bt");
@@ -288,7 +300,7 @@ int front(int argc, char** argv) {
   if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0) {
     std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
     const std::string problem = arguments[0] == "replay" ? start_viewer(rest) : "";
-    if (!problem.empty()) std::cerr << "rtd: --viewer: " << problem << '\n';
+    if (!problem.empty()) std::cerr << "rtd: " << problem << '\n';
     return problem.empty() ? run_external_command(arguments[0], rest) : service::kUsageOrConfig;
   }
 

@@ -84,7 +84,8 @@ void ReplayService::add_options(CLI::App& app, std::vector<service::GivenOption>
   app.get_option("--clock")->expected(0, 1)->default_str("40");
   app.footer(
       "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
-      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser (--set viewer.port=...).\nExit code: 0 "
+      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser, waits for the first page and stays until Ctrl-C "
+      "(--viewer=now, --viewer=exit, --set viewer.port=...).\nExit code: 0 "
       "done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
       "used, 3 the recording is damaged and only its readable part was played");
 }
@@ -230,7 +231,7 @@ service::ExitCode ReplayService::run() {
     stand_ins_.back()->set_state(msg::ServiceState::kRunning, "played by rtd-replay");
   }
   // Slam is ready only when its answers have a subscriber.
-  if (!subscribe_to_answers() || !wait_for_services() || !wait_for_readers())
+  if (!subscribe_to_answers() || !wait_for_services() || !wait_for_page() || !wait_for_readers())
     return runtime_.stop.stop_requested() ? service::kOk : service::kRunFailed;
   runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   commands_ = std::make_unique<ReplayCommands>(runtime_.bus, RecordedSpan{first_ns_, start_ns_, end_ns_},
@@ -253,6 +254,18 @@ bool ReplayService::wait_for_services() {
     runtime_.heartbeat.set_state(msg::ServiceState::kReady, fmt::format("waits for {}", fmt::join(absent, ", ")));
     if (runtime_.stop.wait_for(kLook)) return false;
   }
+}
+
+bool ReplayService::wait_for_page() {
+  const auto is_open = [this] {
+    return runtime_.heartbeat.metric_on_this_host("viewer", service::metric::kClients).value_or(0) > 0;
+  };
+  if (!config_.wait_page || is_open()) return true;
+  SPDLOG_INFO("event=waits_for_page fix=\"open the viewer's address, or --viewer=now\"");
+  runtime_.heartbeat.set_state(msg::ServiceState::kReady, "waits until a page is open");
+  while (!is_open())
+    if (runtime_.stop.wait_for(kLook)) return false;
+  return true;
 }
 
 /// Of the robot whose frames are played.
@@ -306,7 +319,12 @@ service::ExitCode ReplayService::play() {
                     .end_ns = end_ns_,
                     .wanted = [wanted](const mcap::Channel& channel) { return wanted.contains(channel.id); }});
   PlayerOptions options{
-      .rate = config_.rate, .paused = config_.pause, .loop = config_.loop, .start_ns = start_ns_, .end_ns = end_ns_};
+      .rate = config_.rate,
+      .paused = config_.pause,
+      .loop = config_.loop,
+      .hold = config_.hold,
+      .start_ns = start_ns_,
+      .end_ns = end_ns_};
   options.pacer.window = window_;
   options.pacer.resend_after_ns = std::int64_t{config_.resend_after_ms} * 1'000'000;
   options.pacer.result_timeout_ns = to_ns(config_.result_timeout_s);

@@ -32,7 +32,7 @@ struct ServiceConfig {
   std::vector<std::string> topics, exclude;
   std::vector<std::string> remap;
   double clock_hz = 0;
-  bool pause = false;
+  bool pause = false, hold = false, wait_page = false;
   int read_ahead_mb = 64;
   std::string lockstep;  ///< with --pace lockstep or asap an empty topic becomes rtd/tracking
   std::string paced_topic;
@@ -62,6 +62,8 @@ struct ServiceConfig {
     binder.field("remap", remap, "rename topics: old:=new").option("-m,--remap");
     binder.field("clock_hz", clock_hz, {0, 10000}, "rate of /clock, 0 = none, 40 without a number").option("--clock");
     binder.field("pause", pause, "start paused (space continues)").option("-p,--pause,--start-paused");
+    binder.field("hold", hold, "pause at the end instead of ending (space begins again, q ends)").option("--hold");
+    binder.field("wait_page", wait_page, "start when a page of rtd viewer is open").option("--wait-page");
     binder.field("read_ahead_mb", read_ahead_mb, {1, 16384}, "megabytes read before they are due")
         .option("--read-ahead");
     binder.field("lockstep", lockstep, "topic whose messages let the next message of paced_topic go, e.g. rtd/tracking")
@@ -112,6 +114,7 @@ class ReplayService final : public PlayerHost {
   void choose_span();
   void choose_step_ends();
   bool wait_for_services();
+  bool wait_for_page();
   bool wait_for_readers();
   bool subscribe_to_answers();
   std::string answers_topic() const;

@@ -42,6 +42,9 @@ std::size_t bytes_of(const msg::Image& image) {
 std::size_t bytes_of(const msg::PointCloud2& cloud) {
   return sizeof(cloud) + cloud.data.size();
 }
+std::size_t bytes_of(const msg::OccupancyGrid& plan) {
+  return plan.data.size();
+}
 std::size_t bytes_of(const msg::Detection2DArray& detections) {
   return sizeof(detections) + detections.detections.size() * sizeof(msg::Detection2D);
 }
@@ -93,7 +96,7 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
   if (options == options_) return;
   options_ = options;
   using namespace bus::topics;
-  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false, false});
+  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false, false, false, false});
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
   read(movers_, kMovers, options.has_value(),
        [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
@@ -107,7 +110,11 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
        [](RobotMirror& to, const msg::Detection2DArray& detections) { to.add(detections); });
   read(masks_, kDynamicMask, wanted.mask, [](RobotMirror& to, const msg::Image& mask) { to.add(mask); });
   read(people_, kPersonMasks, wanted.people, [](RobotMirror& to, const msg::Image& masks) { to.add_people(masks); });
-  read(dense_, kDensePoints, wanted.dense, [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(cloud); });
+  read(dense_, kDensePoints, wanted.dense,
+       [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(CloudKind::kStatic, cloud); });
+  read(moving_, kMovingPoints, wanted.moving,
+       [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(CloudKind::kMoving, cloud); });
+  read(plan_, kOccupancyGrid, wanted.plan, [](RobotMirror& to, const msg::OccupancyGrid& plan) { to.add(plan); });
 }
 
 }  // namespace rtd::viewer

@@ -52,7 +52,8 @@ class RobotFeed {
   bus::Reader<msg::FeatureFrame> features_;
   bus::Reader<msg::Detection2DArray> detections_;
   bus::Reader<msg::Image> masks_, people_;
-  bus::Reader<msg::PointCloud2> dense_;
+  bus::Reader<msg::PointCloud2> dense_, moving_;
+  bus::Reader<msg::OccupancyGrid> plan_;
 };
 
 }  // namespace rtd::viewer

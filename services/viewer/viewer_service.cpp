@@ -17,6 +17,7 @@
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "services/viewer/browser.hpp"
 #include "services/viewer/core/page_messages.hpp"
 #include "services/viewer/robot_feed.hpp"
 #include "services/viewer/settings.hpp"
@@ -302,7 +303,9 @@ void ViewerService::print_address() const {
   const std::string place =
       fmt::format("{}:{}", host.find(':') == std::string::npos ? host : '[' + host + ']', server_->port());
   const std::string token = token_.empty() ? "" : "?token=" + token_;
-  std::cout << fmt::format("viewer: http://{}/{}   Foxglove: ws://{}/{}\n", place, token, place, token) << std::flush;
+  const std::string page = fmt::format("http://{}/{}", place, token);
+  std::cout << fmt::format("viewer: {}   Foxglove: ws://{}/{}\n", page, place, token) << std::flush;
+  if (config_.open && !open_in_browser(page)) SPDLOG_DEBUG("event=no_browser cause=\"no desktop of this user\"");
   SPDLOG_INFO("event=listening address={} port={} token={} commands={}", config_.bind_address, server_->port(),
               token_.empty()         ? "none"
               : look_freely(config_) ? "for commands"

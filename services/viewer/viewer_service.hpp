@@ -37,6 +37,7 @@ struct ServiceConfig {
   std::vector<std::string> topics{"*"};
   bool read_only = false;
   bool publish = false;
+  bool open = false;
   double max_kbps = 1000;
   double image_hz = 10;
 
@@ -53,6 +54,7 @@ struct ServiceConfig {
         .option("--topics");
     binder.field("read_only", read_only, "no buttons: clients cannot call commands").option("--read-only");
     binder.field("publish", publish, "Foxglove clients may publish messages").option("--publish");
+    binder.field("open", open, "open the page in the browser of this desktop, if there is one").option("--open");
     binder.field("max_kbps", max_kbps, {10, 1e6}, "kB/s that a page gets at most");
     binder.field("image_hz", image_hz, {0.1, 60}, "images per second that a page gets at most");
   }

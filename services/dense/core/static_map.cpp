@@ -17,6 +17,8 @@
 namespace rtd::dense {
 namespace {
 
+constexpr std::uint64_t kMovingEvery = 7;  // one moving point in so many is kept
+
 using Cell = Eigen::Array3i;
 struct CellHash {
   std::size_t operator()(const Cell& c) const {
@@ -174,6 +176,17 @@ void StaticMap::follow_corrections() {
     const auto found = motions.find(anchor);
     return found == motions.end() ? nullptr : &found->second;
   });
+  for (MovingPoint& moving : moving_) {
+    const auto found = motions.find(moving.anchor);
+    if (found != motions.end()) moving.point.p_world = found->second * moving.point.p_world;
+  }
+}
+
+std::vector<CloudPoint> StaticMap::moving() {
+  follow_corrections();
+  std::vector<CloudPoint> points;
+  for (const MovingPoint& moving : moving_) points.push_back(moving.point);
+  return points;
 }
 
 /// Eq. (4): a voxel nearer than what is measured behind it has gone. That also holds at pixels of moving objects.
@@ -205,8 +218,10 @@ void StaticMap::fuse(const DepthView& view, const Eigen::Isometry3f& T_world_cam
       const int pixel = row * width + column;
       const float depth_m = view.depth_m(pixel);
       if (depth_m <= 0 || !view.on_surface(column, row)) continue;
-      if (view.motion(pixel) > allowed) {
+      if (const std::uint8_t motion = view.motion(pixel); motion > allowed) {
         ++report.masked;
+        const bool kept = motion == DynamicMask::kDynamic && report.masked % kMovingEvery == 0;
+        if (kept) keep_moving(T_world_camera * (depth_m * view.table().ray(pixel)), color[column], anchor);
         continue;
       }
       const Eigen::Vector3f ray = view.table().ray(pixel);
@@ -217,6 +232,12 @@ void StaticMap::fuse(const DepthView& view, const Eigen::Isometry3f& T_world_cam
       ++(map_.add(sample, frame_, anchor) ? report.fused : report.refused);
     }
   }
+}
+
+void StaticMap::keep_moving(const Eigen::Vector3f& p_world, const std::array<std::uint8_t, 3>& bgr, AnchorId anchor) {
+  if (moving_.size() >= kMovingKept) moving_.pop_front();
+  moving_.push_back({{p_world, {static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2])}},
+                     anchor});
 }
 
 bool StaticMap::believed(const Voxel& voxel) const {
@@ -245,6 +266,7 @@ bool StaticMap::confirms(const Eigen::Vector3f& p_world) const {
 
 void StaticMap::clear() {
   map_.clear();
+  moving_.clear();
   keyframes_.clear();
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <iosfwd>
 #include <map>
 #include <optional>
@@ -94,6 +95,10 @@ class StaticMap {
   /// What is believed, after the corrections so far; in cells of the voxel size or, to keep to `max_points`,
   /// larger ones.
   std::vector<CloudPoint> cloud(std::size_t max_points = SIZE_MAX);
+  /// Some of the points that were left out because they move, as they were seen: of the newest frames, kMovingKept at
+  /// most.
+  std::vector<CloudPoint> moving();
+  static constexpr std::size_t kMovingKept = 60'000;
   /// Calls visit(voxel) for each voxel that is believed, after the corrections so far.
   template <class Visit>
   void for_each_believed(Visit visit) {
@@ -112,11 +117,17 @@ class StaticMap {
   void follow_corrections();
   std::uint64_t carve(const DepthView& view, const Eigen::Isometry3f& T_camera_world);
   void fuse(const DepthView& view, const Eigen::Isometry3f& T_world_camera, FusionReport& report);
+  void keep_moving(const Eigen::Vector3f& p_world, const std::array<std::uint8_t, 3>& bgr, AnchorId anchor);
   bool believed(const Voxel& voxel) const;
   float sigma_m(float depth_m) const { return static_cast<float>(config_.noise.sigma_m(static_cast<double>(depth_m))); }
 
+  struct MovingPoint {
+    CloudPoint point;
+    AnchorId anchor = kNoAnchor;
+  };
   DenseConfig config_;
   VoxelMap map_;
+  std::deque<MovingPoint> moving_;
   KeyframePoses keyframes_;
   PixelTable table_;
   std::uint32_t frame_ = 0;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/peer_clocks.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
@@ -76,6 +77,12 @@ void Collector::deliver(Recipient& recipient, const std::function<void(Collector
 void Collector::read_frames() {
   reads_frames_ = true;
   subscribe_to_frames(*readers_);
+}
+
+std::optional<double> Collector::metric_of(const std::string& service, const std::string& metric) const {
+  const std::lock_guard lock(mutex_);
+  const auto peer = peers_.peers().find(service);
+  return peer == peers_.peers().end() ? std::nullopt : service::find_metric(peer->second.status, metric);
 }
 
 void Collector::add(const msg::TrackingResult& result) {

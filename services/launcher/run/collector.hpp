@@ -39,6 +39,8 @@ class Collector {
   void read_frames();
   /// As RecordBuilder::active_services.
   std::string active_services(const Tolerated& tolerated = {}) const;
+  /// From the newest heartbeat of a service; empty: none, or none with it.
+  std::optional<double> metric_of(const std::string& service, const std::string& metric) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
   std::vector<std::string> repeated_notices() const;

@@ -151,10 +151,11 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   write_record(record, setup.out_dir);
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
-  end.begin(result.code);
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome == RunOutcome::kComplete && !not_used.empty()) terminal.warn("rtd: " + not_used);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
+  session.keep_viewer();
+  end.begin(result.code);
   if (lost_locks() > 0) {  // threads that stand still cannot be waited for
     std::cout.flush();
     std::_Exit(result.code);

@@ -3,9 +3,11 @@
 #include "services/launcher/run/run_session.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/camera/live_uri.hpp"
 #include "common/io/text.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/process/lost_lock.hpp"
 
@@ -52,7 +54,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       host_(
           [this](const std::string& service, const std::string& line) {
             logs_.add(service, line);
-            if (service == "viewer" && line.starts_with("viewer: ")) terminal_.print("rtd: " + line);
+            if (service == "viewer" && line.starts_with("viewer: ")) terminal_.print("rtd: " + (viewer_line_ = line));
           },
           milliseconds(setup.launcher.hung_after_ms)),
       supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
@@ -125,9 +127,11 @@ void RunSession::require_none_active(const Tolerated& tolerated) const {
                              ", or choose another name with --robot");
 }
 
-/// A camera starts with the others and waits until the launcher, too, reads its frames; a replay starts only then.
+/// A camera starts with the others and waits until the launcher, too, reads its frames; a replay, and what waits for a
+/// page, starts only then.
 void RunSession::supervise(const ServicePlan& source) {
-  if (!setup_.replay) supervisor_.start(source, now());
+  const bool at_once = !setup_.replay && !waits_for_page(source);
+  if (at_once) supervisor_.start(source, now());
   bool plays = false;
   while (!supervisor_.all_ended() || !supervisor_.stopping()) {
     host_.wait(plays ? kTick : kTickOfStart, signals_.fd());
@@ -139,14 +143,14 @@ void RunSession::supervise(const ServicePlan& source) {
     supervisor_.update(time);
     watch_locks();
     stop_when_decided(time);
-    if (!plays && !supervisor_.stopping() && misses_no_result(time)) {
+    if (!plays && !supervisor_.stopping() && misses_no_result(time) && !waits_for_page(source)) {
       collector_.read_frames();
-      if (setup_.replay) supervisor_.start(source, time);
+      if (!at_once) supervisor_.start(source, time);
       plays = true;
     }
     sample_memory(time);
     while (const auto notice = collector_.take_notice()) events_.push_back(*notice);  // the terminal shows the warning
-    if (!supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
+    if (plays && !supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
 }
 
@@ -166,6 +170,27 @@ milliseconds RunSession::interrupt_grace() const {
 bool RunSession::misses_no_result(milliseconds time) const {
   return collector_.connected(!setup_.replay.features) ||
          time - started_ >= milliseconds(setup_.launcher.connect_timeout_ms);
+}
+
+/// A recording is not played before someone can see it, unless the viewer is gone.
+bool RunSession::waits_for_page(const ServicePlan& source) {
+  if (!setup_.viewer_use.waits || source.role != ServiceRole::kSource || page_was_open_) return false;
+  page_was_open_ = collector_.metric_of("viewer", service::metric::kClients).value_or(0) > 0;
+  if (page_was_open_ || !supervisor_.runs("viewer")) return false;
+  if (!viewer_line_.empty() && !std::exchange(wait_shown_, true))
+    terminal_.warn("rtd: waits until the page is open; --viewer=now starts at once");
+  return true;
+}
+
+void RunSession::keep_viewer() {
+  if (!supervisor_.rest_runs()) return;
+  terminal_.warn("rtd: the page stays until Ctrl-C: " + viewer_line_);
+  milliseconds grace(setup_.launcher.interrupt_grace_ms);
+  while (supervisor_.rest_runs()) {
+    host_.wait(kTick, signals_.fd());
+    if (signals_.take() > 0) supervisor_.end_rest(now(), std::exchange(grace, milliseconds(0)));
+    supervisor_.update(now());
+  }
 }
 
 void RunSession::stop_when_decided(milliseconds time) {

@@ -28,6 +28,8 @@ class RunSession {
   /// Returns when no process is left. Throws ProcessError when a service cannot be started at all,
   /// service::ConfigError when another run is in the same DDS domain.
   RunOutcome run(const std::vector<ServicePlan>& plans);
+  /// After run(): the viewer that outlives it stays until it is asked to end.
+  void keep_viewer();
   /// What was observed; call it after run().
   run_record::RunRecord record() const;
   /// At the end the first piece that the source left out; may be empty.
@@ -43,6 +45,7 @@ class RunSession {
   void require_none_active(const Tolerated& tolerated) const;
   void supervise(const ServicePlan& source);
   bool misses_no_result(Milliseconds now) const;
+  bool waits_for_page(const ServicePlan& source);
   void on_event(const SupervisorEvent& event);
   void explain(const std::string& service, const std::vector<std::string>& lines);
   std::chrono::milliseconds interrupt_grace() const;
@@ -64,6 +67,8 @@ class RunSession {
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
+  std::string viewer_line_;  ///< its addresses, as it printed them
+  bool page_was_open_ = false, wait_shown_ = false;
   int slam_restarts_ = 0, slam_worlds_lost_ = 0;
   std::uint64_t lost_locks_ = 0;
 };

@@ -28,6 +28,7 @@ namespace {
 
 /// In realtime no process waits for the detector, so it only gets the processor time that the pose does not need.
 constexpr int kRealtimeNiceness = 10;
+constexpr int kForThePageNiceness = 19;
 
 void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
@@ -44,6 +45,13 @@ void choose_pace(RunSetup& setup) {
   const service::Pace pace = service::parse_pace(setup.pace.empty() ? usual_pace(setup) : setup.pace);
   setup.pace = service::to_string(pace);
   setup.launcher.hung_after_ms = service::patience_of(pace).silent_ms;
+}
+
+void choose_viewer(RunSetup& setup) {
+  if (setup.viewer.empty()) return;
+  const std::optional<ViewerUse> use = parse_viewer_use(setup.viewer);
+  if (!use) throw ConfigError(viewer_use_problem(setup.viewer));
+  setup.viewer_use = *use;
 }
 
 /// The launcher reads its own sections; the services check theirs when they start.
@@ -187,7 +195,8 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
 
 /// With the base of the robot slam's map has z up.
 std::vector<std::string> dense_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments = {"--out", setup.out_dir};
+  std::vector<std::string> arguments;
+  if (setup.dense) arguments = {"--out", setup.out_dir};
   if (setup.services.base.z_up() && setup.services.up.empty()) arguments.emplace_back("--up=0,0,1");
   return arguments;
 }
@@ -269,7 +278,7 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
 bool RunSetup::reports_masks() const {
   if (bus_options.security.enabled()) return false;  // the keys of a launcher do not admit it to them
   const bool replayed = std::ranges::count(replay.topics, std::string(bus::topics::kPersonMasks.name)) > 0;
-  const bool read_by_others = viewer || !record.empty() || services.person_masks == "on";
+  const bool read_by_others = viewer_use.shown || !record.empty() || services.person_masks == "on";
   return replayed || (!mask_model_path.empty() && (show_masks || read_by_others || services.masks.use == "on"));
 }
 
@@ -277,6 +286,7 @@ RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup(options);
   setup.source = camera::complete_uri(setup.source);
   choose_pace(setup);
+  choose_viewer(setup);
   load_config(setup);
   choose_vendors(setup);
   setup.replay = choose_replay(setup, setup.bus_options.robot);
@@ -337,10 +347,15 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
     if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
       service.niceness = kRealtimeNiceness;
   }
-  if (setup.viewer) {  // no other service waits for it
-    plans.push_back(plan(setup, "viewer", ServiceRole::kOptional, {}));
+  if (setup.viewer_use.shown) {  // no other service waits for it, nor for the room that it shows
+    if (!setup.dense && !process::find_executable("rtd-dense").empty()) {
+      plans.push_back(plan(setup, "dense", ServiceRole::kOptional, dense_arguments(setup)));
+      plans.back().niceness = kForThePageNiceness;
+    }
+    plans.push_back(plan(setup, "viewer", ServiceRole::kOptional, {"--open"}));
     plans.back().niceness = kRealtimeNiceness;
     plans.back().ends_last = true;
+    plans.back().outlives_run = setup.viewer_use.stays;
   }
   // In realtime no service waits for boxes: the run starts with geometry and uses boxes when they arrive.
   if (setup.remote_detector && setup.pace != "realtime") wait_for.emplace_back("detector");

@@ -15,6 +15,7 @@
 #include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
+#include "services/launcher/core/run/viewer_use.hpp"
 
 namespace rtd::launcher {
 
@@ -81,7 +82,7 @@ struct RunOptions {
   std::string detector = "auto";    ///< "auto": when weights are found and the filter mode needs them; "off"; "remote"
   std::string out_dir;
   bool dense = false;                      ///< also fuse a dense static map
-  bool viewer = false;                     ///< also show the run in the browser
+  std::string viewer;                      ///< also show the run in the browser: parse_viewer_use(); empty = no
   std::string trace;                       ///< write what each service did when into this file; empty = no
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
   std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
@@ -127,6 +128,7 @@ struct RunSetup : RunOptions {
   bool remote_detector = false;                   ///< it runs on another host; the launcher does not start it
   std::string weights_advice;   ///< where to get weights, when the filter mode needs a detector and there are none
   bool save_map_asked = false;  ///< the user named the file
+  ViewerUse viewer_use;
   ReplaySetup replay;
   std::vector<std::string> beside;  ///< ROS names of topics of a recorded source that slam needs, for --beside
 

@@ -158,7 +158,18 @@ void Player::send_head(std::int64_t due_ns) {
 void Player::end_of_feed() {
   if (by_answers() && !pacer_.in_flight().empty() && !follow(pacer_.drain())) return;
   if (options_.loop && sent_ > 0) return seek(options_.start_ns);
-  outcome_ = PlayOutcome::kEnded;
+  if (!options_.hold) {
+    outcome_ = PlayOutcome::kEnded;
+  } else if (schedule_.paused()) {
+    held_ = true;
+    steps_ = 0;
+    end_step("the recording is at its end");
+    wait_until(host_.now_ns() + kShowEveryNs);
+  } else if (held_) {
+    seek(options_.start_ns);
+  } else {
+    toggle_pause();
+  }
 }
 
 void Player::wait_until(std::int64_t deadline_ns) {
@@ -253,6 +264,7 @@ void Player::change_rate(double factor) {
 
 void Player::seek(std::int64_t recorded_ns) {
   const std::int64_t target_ns = std::clamp(recorded_ns, options_.start_ns, options_.end_ns);
+  held_ = false;
   feed_.seek(target_ns);
   head_.reset();
   last_recorded_ns_ = target_ns;

@@ -16,9 +16,10 @@ namespace rtd::viewer {
 /// What a page wants to be sent; a hidden panel switches its part off.
 struct PageOptions {
   bool image = true, mask = true, features = true, points = true, dense = false, people = true;
+  bool moving = false, plan = false;  ///< the dense points of what moved; the floor plan
   PageOptions operator|(const PageOptions& other) const {
-    return {image || other.image,   mask || other.mask,   features || other.features,
-            points || other.points, dense || other.dense, people || other.people};
+    return {image || other.image, mask || other.mask,     features || other.features, points || other.points,
+            dense || other.dense, people || other.people, moving || other.moving,     plan || other.plan};
   }
   bool operator==(const PageOptions&) const = default;
 };
@@ -31,6 +32,7 @@ struct PageLimits {
   double burst_bytes = 2e6;           ///< at once, e.g. the whole state for a new page
   double messages_per_s = 31;         ///< of poses, at most
   std::size_t most_points = 200'000;  ///< of a map; a larger map is thinned out
+  std::size_t most_dense = 120'000;   ///< of a dense cloud
 };
 
 struct PageGreeting {

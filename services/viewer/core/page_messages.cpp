@@ -149,6 +149,19 @@ Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame) {
 
 namespace {
 
+/// Pairs (value, run - 1); sets the count of the head.
+void put_runs(ByteWriter& writer, std::span<const std::uint8_t> values) {
+  const std::size_t first = writer.size();
+  for (std::size_t place = 0; place < values.size();) {
+    std::size_t end = place + 1;
+    while (end < values.size() && end - place < 256 && values[end] == values[place]) ++end;
+    writer.put(values[place]);
+    writer.put(static_cast<std::uint8_t>(end - place - 1));
+    place = end;
+  }
+  writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
+}
+
 Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
   const std::size_t pixels = std::size_t{image.width} * image.height;
   constexpr std::size_t kMaxPixels = 1U << 20U;
@@ -159,19 +172,29 @@ Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
   writer.put(seconds(image.header.stamp));
   writer.put(static_cast<std::uint16_t>(image.width));
   writer.put(static_cast<std::uint16_t>(image.height));
-  const std::size_t first = writer.size();
-  for (std::size_t place = 0; place < pixels;) {
-    std::size_t end = place + 1;
-    while (end < pixels && end - place < 256 && image.data[end] == image.data[place]) ++end;
-    writer.put(image.data[place]);
-    writer.put(static_cast<std::uint8_t>(end - place - 1));
-    place = end;
-  }
-  writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
+  put_runs(writer, {image.data.data(), pixels});
   return writer.take();
 }
 
 }  // namespace
+
+Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan) {
+  const auto& [load_time, cell_m, width, height, origin] = plan.info;
+  constexpr std::size_t kMaxSide = 4096;
+  const std::size_t cells = std::size_t{width} * height;
+  if (cells == 0 || width > kMaxSide || height > kMaxSide || plan.data.size() != cells || !(cell_m > 0)) return {};
+  ByteWriter writer = begin(Kind::kPlan, robot, 0, 0);
+  writer.put(cell_m);
+  writer.put(static_cast<std::uint16_t>(width));
+  writer.put(static_cast<std::uint16_t>(height));
+  const auto& [position, turn] = origin;
+  for (const double value : {position.x, position.y, position.z, turn.x, turn.y, turn.z, turn.w})
+    writer.put(static_cast<float>(value));
+  std::vector<std::uint8_t> values(cells);
+  std::ranges::transform(plan.data, values.begin(), [](std::int8_t cell) { return static_cast<std::uint8_t>(cell); });
+  put_runs(writer, values);
+  return writer.take();
+}
 
 Bytes mask(std::uint8_t robot, const msg::Image& image) {
   return runs(Kind::kMask, robot, image);
@@ -181,10 +204,10 @@ Bytes people(std::uint8_t robot, const msg::Image& image) {
   return runs(Kind::kPeople, robot, image);
 }
 
-Bytes dense(std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
+Bytes dense(Kind kind, std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
             float scale_m, std::span<const std::byte> points) {
   constexpr std::size_t kPointBytes = 9;
-  ByteWriter writer = begin(Kind::kDense, robot, 0, points.size() / kPointBytes);
+  ByteWriter writer = begin(kind, robot, 0, points.size() / kPointBytes);
   writer.put(start);
   writer.put(total);
   put(writer, origin_m);

@@ -37,6 +37,8 @@ enum class Kind : std::uint8_t {
   kMask = 11,
   kDense = 12,
   kPeople = 13,
+  kMoving = 14,
+  kPlan = 15,
 };
 
 /// What every binary message begins with.
@@ -65,7 +67,10 @@ Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame);
 Bytes mask(std::uint8_t robot, const msg::Image& image);
 /// The same of the detector's person masks.
 Bytes people(std::uint8_t robot, const msg::Image& image);
-Bytes dense(std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
+/// The floor plan: its place, and runs of equal cells. Empty for one of an implausible size.
+Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan);
+/// kind: kDense or kMoving.
+Bytes dense(Kind kind, std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,
             float scale_m, std::span<const std::byte> points);
 
 // --- Text

@@ -95,7 +95,8 @@ void PageSession::on_text(std::string_view message_text) {
   if (op == "options") {
     options_ = {flag(message, "image", options_.image),       flag(message, "mask", options_.mask),
                 flag(message, "features", options_.features), flag(message, "points", options_.points),
-                flag(message, "dense", options_.dense),       flag(message, "people", options_.people)};
+                flag(message, "dense", options_.dense),       flag(message, "people", options_.people),
+                flag(message, "moving", options_.moving),     flag(message, "plan", options_.plan)};
     const auto robot = message.find("robot");
     if (robot != message.end() && robot->is_number_unsigned()) watched_ = robot->get<std::uint64_t>();
   } else if (op == "call") {
@@ -178,7 +179,9 @@ std::optional<Frame> PageSession::next_of(const RobotMirror& robot, Sent& sent, 
   if (auto frame = next_truth(robot, sent)) return frame;
   if (auto frame = next_view(robot, sent, now_ns)) return frame;
   if (auto frame = next_points(robot, sent)) return frame;
-  return next_dense(robot, sent);
+  if (auto frame = next_plan(robot, sent)) return frame;
+  if (auto frame = next_dense(robot, sent, CloudKind::kStatic)) return frame;
+  return next_dense(robot, sent, CloudKind::kMoving);
 }
 
 std::optional<Frame> PageSession::next_item(const RobotMirror& robot, Sent& sent, std::int64_t now_ns) const {
@@ -260,22 +263,17 @@ std::optional<Frame> PageSession::next_truth(const RobotMirror& robot, Sent& sen
   return binary_frame(page::truth(robot.index(), static_cast<std::uint32_t>(start), points));
 }
 
-/// Overlays first: the image is drawn with the overlays of its stamp that are there.
+/// Overlays first: the image is drawn with the overlays of its stamp that are there. Those that come later are sent
+/// when they come.
 std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent, std::int64_t now_ns) {
   if (sent.view.empty()) {
     if (static_cast<double>(now_ns - sent.view_ns) * hub_.limits_.views_per_s < 1e9 || !views_.allows())
       return std::nullopt;
     const auto view = robot.newest_view();
-    if (!view || view->stamp_ns == sent.view_stamp_ns) return std::nullopt;
-    sent.view_ns = now_ns;
-    sent.view_stamp_ns = view->stamp_ns;
-    const PageOptions wanted = options(robot.index());
-    if (wanted.image && view->image) sent.view.emplace_back(false, view->image);
-    if (wanted.image && view->boxes) sent.view.emplace_back(true, view->boxes);
-    if (wanted.people && view->people) sent.view.emplace_back(false, view->people);
-    if (wanted.mask && view->mask) sent.view.emplace_back(false, view->mask);
-    if (wanted.features && view->features) sent.view.emplace_back(false, view->features);
+    if (!view) return std::nullopt;
+    choose_parts(*view, options(robot.index()), sent);
     if (sent.view.empty()) return std::nullopt;
+    sent.view_ns = now_ns;
   }
   const auto [is_text, payload] = sent.view.back();
   sent.view.pop_back();
@@ -283,21 +281,51 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
   return shared_frame(is_text, payload);
 }
 
-std::optional<Frame> PageSession::next_dense(const RobotMirror& robot, Sent& sent) const {
-  const RobotMirror::Dense& dense = robot.dense();
-  if (!options_.dense || dense.revision == 0 || !all_.allows(0.25)) return std::nullopt;
-  const std::size_t total = dense.points.size() / kDensePointBytes;
-  if (sent.dense != dense.revision) {
-    if (sent.dense != 0 && !all_.allows(0.9)) return std::nullopt;  // a renewed cloud waits for quiet
-    sent.dense = dense.revision;
-    sent.dense_points = 0;
+/// What the page wants of the view and does not have; the last part goes first.
+void PageSession::choose_parts(const View& view, const PageOptions& wanted, Sent& sent) {
+  if (view.stamp_ns != sent.view_stamp_ns) sent.view_parts = {};
+  sent.view_stamp_ns = view.stamp_ns;
+  struct Part {
+    bool wanted, is_text;
+    const Payload& payload;
+  };
+  const std::array<Part, 5> parts = {{{wanted.image, false, view.image},
+                                      {wanted.image, true, view.boxes},
+                                      {wanted.people, false, view.people},
+                                      {wanted.mask, false, view.mask},
+                                      {wanted.features, false, view.features}}};
+  for (std::size_t place = 0; place < parts.size(); ++place) {
+    const auto& [is_wanted, is_text, payload] = parts[place];
+    if (!is_wanted || !payload || payload == sent.view_parts[place]) continue;
+    sent.view_parts[place] = payload;
+    sent.view.emplace_back(is_text, payload);
   }
-  if (sent.dense_points >= total) return std::nullopt;
-  const std::size_t start = sent.dense_points, count = std::min(kChunkDense, total - start);
-  sent.dense_points += count;
-  return binary_frame(page::dense(robot.index(), static_cast<std::uint32_t>(start), static_cast<std::uint32_t>(total),
-                                  dense.origin_m, dense.scale_m,
+}
+
+std::optional<Frame> PageSession::next_dense(const RobotMirror& robot, Sent& all_sent, CloudKind kind) const {
+  const RobotMirror::Dense& dense = robot.dense(kind);
+  Sent::Cloud& sent = all_sent.clouds[static_cast<std::size_t>(kind)];
+  const bool wanted = kind == CloudKind::kStatic ? options_.dense : options_.moving;
+  if (!wanted || dense.revision == 0 || !all_.allows(0.25)) return std::nullopt;
+  const std::size_t total = std::min(dense.points.size() / kDensePointBytes, hub_.limits_.most_dense);
+  if (sent.revision != dense.revision) {
+    if (sent.revision != 0 && !all_.allows(0.9)) return std::nullopt;  // a renewed cloud waits for quiet
+    sent = {dense.revision, 0};
+  }
+  if (sent.points >= total) return std::nullopt;
+  const std::size_t start = sent.points, count = std::min(kChunkDense, total - start);
+  sent.points += count;
+  return binary_frame(page::dense(kind == CloudKind::kStatic ? page::Kind::kDense : page::Kind::kMoving, robot.index(),
+                                  static_cast<std::uint32_t>(start), static_cast<std::uint32_t>(total), dense.origin_m,
+                                  dense.scale_m,
                                   std::span(dense.points).subspan(start * kDensePointBytes, count * kDensePointBytes)));
+}
+
+std::optional<Frame> PageSession::next_plan(const RobotMirror& robot, Sent& sent) const {
+  const RobotMirror::Message& plan = robot.plan();
+  if (!options_.plan || plan.revision == sent.plan || !all_.allows(0.25)) return std::nullopt;
+  sent.plan = plan.revision;
+  return shared_frame(false, plan.payload);
 }
 
 std::optional<Frame> PageSession::link_report(std::int64_t now_ns) {

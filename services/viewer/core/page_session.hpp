@@ -51,10 +51,16 @@ class PageSession : public Session {
   /// What the page has of one robot.
   struct Sent {
     std::uint64_t epoch = 0, poses = 0, points = 0, edges = 0, loops = 0;
-    std::size_t trajectory = 0, truth = 0, dense_points = 0;
-    std::uint64_t truth_revision = 0, dense = 0;
+    std::size_t trajectory = 0, truth = 0;
+    std::uint64_t truth_revision = 0, plan = 0;
+    struct Cloud {
+      std::uint64_t revision = 0;
+      std::size_t points = 0;
+    };
+    std::array<Cloud, kCloudKinds> clouds{};
     std::array<std::uint64_t, kItems> items{};
     std::int64_t tracking_ns = 0, view_ns = 0, view_stamp_ns = 0;
+    std::array<Payload, 5> view_parts;           ///< of that stamp
     std::vector<std::pair<bool, Payload>> view;  ///< parts still to be sent: text or not
   };
 
@@ -68,7 +74,9 @@ class PageSession : public Session {
   std::optional<Frame> next_trajectory(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_truth(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_view(const RobotMirror& robot, Sent& sent, std::int64_t now_ns);
-  std::optional<Frame> next_dense(const RobotMirror& robot, Sent& sent) const;
+  static void choose_parts(const View& view, const PageOptions& wanted, Sent& sent);
+  std::optional<Frame> next_dense(const RobotMirror& robot, Sent& sent, CloudKind kind) const;
+  std::optional<Frame> next_plan(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> link_report(std::int64_t now_ns);
   void call(std::uint64_t id, std::size_t robot, const std::string& name, const std::string& argument);
 

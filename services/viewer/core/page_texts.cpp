@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Dense>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,14 @@ json stages(const char* const (&names)[kNames], const std::array<float, kStages>
   for (std::size_t place = 0; place < kNames; ++place)
     if (stage_ms[place] > 0) result[names[place]] = rounded(static_cast<double>(stage_ms[place]), 1e2);
   return result;
+}
+
+/// The measured velocity is within what its covariance makes likely for an object at rest.
+bool rests(const msg::Mover& mover) {
+  constexpr double kLikely = 11.34;  // 99 % of chi-square with 3 degrees of freedom
+  const Eigen::Map<const Eigen::Vector3d> velocity_mps(mover.velocity_mps.data());
+  const Eigen::Map<const Eigen::Matrix<double, 6, 6>> covariance(mover.covariance.data());
+  return !(velocity_mps.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(velocity_mps)) > kLikely);
 }
 
 json pose(const msg::Transform& transform) {
@@ -112,6 +121,7 @@ std::string movers(std::uint8_t robot, const msg::Movers& movers) {
                     {"center", rounded_all(mover.center_m)},
                     {"size", rounded_all(mover.size_m)},
                     {"velocity", rounded_all(mover.velocity_mps)},
+                    {"rests", rests(mover)},
                     {"static_probability", rounded(static_cast<double>(mover.static_probability), 1e2)}});
   return json_line({{"type", "movers"},
                     {"robot", robot},

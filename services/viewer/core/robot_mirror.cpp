@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 
 #include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
@@ -21,9 +22,9 @@ Eigen::Matrix3Xd matrix_of(const std::vector<Eigen::Vector3d>& points) {
   return Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3, static_cast<Eigen::Index>(points.size()));
 }
 
-constexpr std::size_t kKept = 12;  ///< images and overlays, newest
+constexpr std::size_t kKept = 64;  ///< images and overlays, newest
 constexpr std::int64_t kMs = 1'000'000;
-constexpr std::int64_t kPatienceNs = 250 * kMs;  // an image without features of its frame is shown after it
+constexpr std::int64_t kFilterGoneNs = 2000 * kMs;  // images that are so much newer than all features are shown alone
 constexpr std::int64_t kSameFrameNs = 1 * kMs;
 constexpr std::int64_t kBoxesStayNs = 400 * kMs;  // a slow detector's boxes are those of an earlier frame
 
@@ -49,6 +50,13 @@ std::optional<std::array<std::uint32_t, 4>> layout_of(const msg::PointCloud2& cl
     offsets[place] = field->offset;
   }
   return offsets;
+}
+
+/// Steps of about .62 of the count, without a common divisor, visit all places and each part of them evenly.
+std::size_t spreading_step(std::size_t count) {
+  auto step = static_cast<std::size_t>(0.618 * static_cast<double>(count)) | 1U;
+  while (std::gcd(step, count) != 1) ++step;
+  return step;
 }
 
 template <class T>
@@ -158,7 +166,8 @@ void RobotMirror::add(const msg::ServiceStatus& status, std::int64_t received_ns
 }
 
 /// 16-bit steps within the cloud's box, and its colours.
-void RobotMirror::add(const msg::PointCloud2& cloud) {
+void RobotMirror::add(CloudKind kind, const msg::PointCloud2& cloud) {
+  Dense& dense_of_kind = dense_[static_cast<std::size_t>(kind)];
   const auto layout = layout_of(cloud);
   const std::size_t count = cloud.point_step == 0 ? 0 : cloud.data.size() / cloud.point_step;
   if (!layout || count == 0) return;
@@ -172,10 +181,11 @@ void RobotMirror::add(const msg::PointCloud2& cloud) {
   for (std::size_t place = 0; place < count; ++place)
     if (const Eigen::Vector3f point = position(place); point.allFinite()) box.extend(point);
   if (box.isEmpty()) return;
-  Dense dense{.revision = dense_.revision + 1, .origin_m = box.center()};
+  Dense dense{.revision = dense_of_kind.revision + 1, .origin_m = box.center()};
   dense.scale_m = std::max(0.001F, box.sizes().maxCoeff() / 2) / INT16_MAX;
   ByteWriter writer;
-  for (std::size_t place = 0; place < count; ++place) {
+  const std::size_t step = spreading_step(count);
+  for (std::size_t turn = 0, place = 0; turn < count; ++turn, place = (place + step) % count) {
     const Eigen::Vector3f point = (position(place) - dense.origin_m) / dense.scale_m;
     if (!point.allFinite()) continue;
     for (int axis = 0; axis < 3; ++axis) writer.put(static_cast<std::int16_t>(std::lround(point[axis])));
@@ -183,7 +193,12 @@ void RobotMirror::add(const msg::PointCloud2& cloud) {
     for (const int channel : {2, 1, 0}) writer.put(bgr[static_cast<std::size_t>(channel)]);
   }
   dense.points = writer.take();
-  dense_ = std::move(dense);
+  dense_of_kind = std::move(dense);
+}
+
+void RobotMirror::add(const msg::OccupancyGrid& plan) {
+  Bytes bytes = page::plan(index_, plan);
+  if (!bytes.empty()) plan_ = {plan_.revision + 1, shared(std::move(bytes))};
 }
 
 void RobotMirror::add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m) {
@@ -239,19 +254,24 @@ Payload RobotMirror::at(const Overlays& overlays, std::int64_t stamp_ns, std::in
   return nullptr;
 }
 
+/// On a busy host features come long after their image. They never come if the filter ended, or if it looks at other
+/// images than these.
+bool RobotMirror::filter_is_late() const {
+  return !images_.empty() && !features_.empty() && images_.size() < kKept &&
+         msg::minus_ns(images_.back().stamp_ns, features_.back().stamp_ns) <= kFilterGoneNs;
+}
+
 std::optional<View> RobotMirror::newest_view() const {
   if (images_.empty() && features_.empty()) return std::nullopt;
-  const std::int64_t newest_ns = images_.empty() ? features_.back().stamp_ns : images_.back().stamp_ns;
   View view;
-  for (auto image = images_.rbegin(); image != images_.rend() && !view.features; ++image) {
-    if (msg::minus_ns(newest_ns, image->stamp_ns) > kPatienceNs) break;
+  for (auto image = images_.rbegin(); image != images_.rend() && !view.features; ++image)
     view = {
         .stamp_ns = image->stamp_ns, .image = image->payload, .features = at(features_, image->stamp_ns, kSameFrameNs)};
-  }
-  if (!view.features) {  // no filter, or no image
-    view.stamp_ns = newest_ns;
-    view.image = images_.empty() ? nullptr : images_.back().payload;
-    view.features = images_.empty() ? features_.back().payload : nullptr;
+  if (!view.features) {
+    if (filter_is_late()) return std::nullopt;
+    const Overlay& newest = images_.empty() ? features_.back() : images_.back();
+    view.stamp_ns = newest.stamp_ns;
+    (images_.empty() ? view.features : view.image) = newest.payload;
   }
   view.mask = at(masks_, view.stamp_ns, kSameFrameNs);
   view.boxes = at(boxes_, view.stamp_ns, kBoxesStayNs);

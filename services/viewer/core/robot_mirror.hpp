@@ -66,6 +66,10 @@ using Payload = std::shared_ptr<const Bytes>;
 enum class Item { kTracking, kCommands, kPlayback, kStatus, kMovers, kTruthError };
 inline constexpr std::size_t kItems = 6;
 
+/// Of dense points: what stays, what moved.
+enum class CloudKind { kStatic, kMoving };
+inline constexpr std::size_t kCloudKinds = 2;
+
 /// An image with what the other services found in it. Parts that are missing are null.
 struct View {
   std::int64_t stamp_ns = 0;
@@ -87,7 +91,8 @@ class RobotMirror {
   /// The detector's person masks.
   void add_people(const msg::Image& masks);
   void add(const msg::ServiceStatus& status, std::int64_t received_ns);
-  void add(const msg::PointCloud2& dense);
+  void add(CloudKind kind, const msg::PointCloud2& cloud);
+  void add(const msg::OccupancyGrid& plan);
   void add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
   void set_commands(const std::vector<CommandInfo>& commands);
   /// Any other item, as JSON without "robot".
@@ -104,19 +109,21 @@ class RobotMirror {
     Payload payload;
   };
   const Message& item(Item item) const { return items_[static_cast<std::size_t>(item)]; }
-  /// The newest image, when the filter has had the time to look at it, with its overlays.
+  /// The newest image that the filter has looked at, with its overlays; without a filter, the newest one.
   std::optional<View> newest_view() const;
   const TruthTrack& truth() const { return truth_; }
   std::vector<msg::ServiceStatus> services() const;
   std::vector<page::ServiceLine> services(std::int64_t now_ns) const;
-  /// Dense points, 9 bytes each as on the wire, and how to read them.
+  /// Dense points, 9 bytes each as on the wire, and how to read them. The first n are spread over all.
   struct Dense {
     std::uint64_t revision = 0;
     Eigen::Vector3f origin_m = Eigen::Vector3f::Zero();
     float scale_m = 0;
     Bytes points;
   };
-  const Dense& dense() const { return dense_; }
+  const Dense& dense(CloudKind kind) const { return dense_[static_cast<std::size_t>(kind)]; }
+  /// The floor plan as a message that is ready to be sent.
+  const Message& plan() const { return plan_; }
 
  private:
   struct Overlay {
@@ -130,6 +137,7 @@ class RobotMirror {
   };
 
   void set_payload(Item item, std::string text);
+  bool filter_is_late() const;
   static void keep(Overlays& overlays, std::int64_t stamp_ns, Payload payload);
   static Payload at(const Overlays& overlays, std::int64_t stamp_ns, std::int64_t tolerance_ns);
 
@@ -140,7 +148,8 @@ class RobotMirror {
   std::map<std::string, KnownService> services_;
   std::optional<std::array<float, msg::kFilterStages>> filter_stage_ms_;
   TruthTrack truth_;
-  Dense dense_;
+  std::array<Dense, kCloudKinds> dense_;
+  Message plan_;
 };
 
 }  // namespace rtd::viewer

@@ -20,7 +20,7 @@ import { Settings } from "./settings.js";
 import { bindShortcuts } from "./shortcuts.js";
 import { SystemPanel } from "./system_panel.js";
 import { exposeHooks } from "./hooks.js";
-import { situation } from "./waiting.js";
+import { hasEnded, situation } from "./waiting.js";
 
 const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
 const kFrugalImagePause = 2;   // times the pause between two drawings of the map
@@ -167,7 +167,7 @@ class App {
     this.controls.update(robot, allowed);
     this.replay.update(robot, allowed);
     this.layers.update(session);
-    if (!robot?.image) this.image.update(robot);
+    if (!robot?.image) this.image.update(robot, robot !== undefined && hasEnded(robot));
     const { count, reason } = this.undecoded;
     setText(byId("undecoded"), count > 0 ? `${count} ${count === 1 ? "message" : "messages"} could not be read: ${reason}` : "");
   }
@@ -186,7 +186,7 @@ class App {
     const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;
     const options = { op: "options", image, mask: image && overlays.mask, people: image && overlays.people,
                       features: image && overlays.features,
-                      points: layers.points, dense: layers.dense, robot: this.selected };
+                      points: layers.points, dense: layers.dense, moving: layers.moving, plan: layers.plan, robot: this.selected };
     const text = JSON.stringify(options);
     if (text !== this.options && this.connection.send(options)) this.options = text;
   }

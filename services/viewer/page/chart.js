@@ -3,6 +3,7 @@
 
 // Small charts on a canvas: lines, and stacked areas, over the last minute. The newest value is at the right edge.
 
+import { axisMark } from "./format.js";
 import { kSeriesColors } from "./palette.js";
 import { niceCeiling, percentile } from "./series.js";
 
@@ -51,7 +52,7 @@ class Frame {
       context.lineTo(box.right, y);
       context.stroke();
       const inside = Math.min(box.bottom - this.font_px / 2 + 3, Math.max(box.top + this.font_px / 2 - 3, y));
-      context.fillText(String(Number(value.toPrecision(2))), box.left - 5, inside);
+      context.fillText(axisMark(value), box.left - 5, inside);
     }
   }
 }

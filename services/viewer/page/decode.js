@@ -116,6 +116,12 @@ function densePoints(reader, count) {
   return { start, total, positions, colors };
 }
 
+/** t, q: of the corner of the first cell; its axes x and y lie in the plan. */
+function floorPlan(reader, count) {
+  const cell_m = reader.f32(), width = reader.u16(), height = reader.u16();
+  return { cell_m, width, height, t: reader.f32s(3), q: reader.f32s(4), runs: reader.bytes(count) };
+}
+
 const kBodies = {
   1: ["keyframe_poses", keyframePoses],
   2: ["keyframes_removed", (reader, count) => ({ ids: reader.u32s(count) })],
@@ -129,6 +135,8 @@ const kBodies = {
   11: ["mask", maskRuns],
   12: ["dense", densePoints],
   13: ["people", maskRuns],
+  14: ["moving", densePoints],
+  15: ["plan", floorPlan],
 };
 
 /** The message as {type, robot, map, ...}; null for a kind that a newer server may send. */
@@ -142,7 +150,7 @@ export function decode(buffer) {
 }
 
 /** One value per pixel, row by row. Of the dynamic mask: 255 moves or may move, 128 unknown, 0 static; of people: 0 none,
-    n the n-th box. */
+    n the n-th box. Of a floor plan: 0 free, 100 occupied, 255 unknown. */
 export function expandMask({ width, height, runs }) {
   const mask = new Uint8Array(width * height);
   let at = 0;

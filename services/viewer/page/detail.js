@@ -6,7 +6,7 @@
 
 const kSlow_ms = 85, kFast_ms = 50;     // between two frames; in between nothing changes
 const kPause_ms = 400;                  // frames that are further apart say nothing about the speed
-const kLeastShare = 0.2;
+const kLeastShare = 0.05;
 const kLess = 0.85, kMore = 1.1;
 const kMemory = 0.7;                    // weight of the past in the mean
 

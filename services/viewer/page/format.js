@@ -24,6 +24,9 @@ export function rate(value_kBps) {
   return value_kBps < 1000 ? `${value_kBps.toFixed(0)} kB/s` : `${(value_kBps / 1000).toFixed(1)} MB/s`;
 }
 
+/** A mark of an axis, short: 0.5, 200, 10k */
+export const axisMark = (value) => (value < 10_000 ? String(Number(value.toPrecision(2))) : `${Number((value / 1000).toPrecision(2))}k`);
+
 /** Minutes and seconds: 1:05.3 */
 export function clockTime(value_s) {
   if (!Number.isFinite(value_s)) return kNone;

@@ -70,3 +70,16 @@ function includeKeyframes(map, bounds) {
   });
   return bounds;
 }
+
+/** How many heights each rectangle {x (middle), y (bottom), width, height} goes up, so that it covers none before it. */
+export function stackLevels(rectangles) {
+  const placed = [];
+  const covers = (a, b) => Math.abs(a.x - b.x) < (a.width + b.width) / 2 && a.y < b.y + b.height && b.y < a.y + a.height;
+  return rectangles.map((rectangle) => {
+    let level = 0;
+    const at = () => ({ ...rectangle, y: rectangle.y + level * rectangle.height });
+    while (placed.some((other) => covers(at(), other))) level += 1;
+    placed.push(at());
+    return level;
+  });
+}

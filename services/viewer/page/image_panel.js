@@ -30,9 +30,10 @@ export class ImagePanel {
     for (const name of Object.keys(settings.overlays)) this.#bindSwitch(name);
   }
 
-  /** robot: or undefined. Draws with the next frame of the screen. */
-  update(robot) {
+  /** robot: or undefined; ended: its source has. Draws with the next frame of the screen. */
+  update(robot, ended = this.ended) {
     this.robot = robot;
+    this.ended = ended;
     if (this.requested) return;
     this.requested = true;
     const show = () => requestAnimationFrame((now_ms) => {
@@ -72,6 +73,8 @@ export class ImagePanel {
   #reveal() {
     this.canvas.hidden = !this.bitmap;
     byId("image-none").hidden = !this.canvas.hidden;
+    setText(byId("image-none"), this.ended ? "The source has ended, and no image was kept: this page was not open when images came."
+                                           : "No image yet. It appears with the first frame of the camera.");
   }
 
   /** One at a time: while an image is decoded the next ones wait, and only the newest of them is shown. */

@@ -27,6 +27,7 @@ export class Look {
     this.lostMaterial = new THREE.LineBasicMaterial();
     this.moverMaterial = new THREE.LineBasicMaterial();
     this.denseMaterial = new THREE.PointsMaterial({ size: 2, sizeAttenuation: false, vertexColors: THREE.VertexColors });
+    this.movingMaterial = new THREE.PointsMaterial({ size: 2, sizeAttenuation: false, transparent: true, opacity: 0.35 });
   }
 
   /** settings: {theme: light | dark, large, coloring}. view: {pixelRatio, height_px, fov_deg} of the canvas. */
@@ -44,7 +45,8 @@ export class Look {
     this.moverMaterial.color.set(palette.moving);
     this.points.coloring.value = kColorings[coloring] ?? 0;
     this.points.size.value = (large ? 3.5 : 2) * pixelRatio;
-    this.denseMaterial.size = this.points.size.value;
+    this.denseMaterial.size = this.movingMaterial.size = this.points.size.value;
+    this.movingMaterial.color.set(palette.points);
     this.textScale = large ? 1.3 : 1;
     this.unitsPerPixel = 2 * Math.tan(fov_deg * Math.PI / 360) / Math.max(1, height_px);
   }

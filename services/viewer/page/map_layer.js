@@ -7,11 +7,14 @@ import * as THREE from "/three/build/three.module.js";
 import { lineMaterial, pointMaterial, PoseTexture } from "./anchored.js";
 import { keyframeExtent_m, mapBounds } from "./geometry.js";
 import { drawOrder, PointPool } from "./point_pool.js";
-import { edgeSlots, frustumLines, trajectoryVertices } from "./map_lines.js";
+import { planMesh } from "./plan_mesh.js";
+import { edgeSlots, frustumLines, slotsApart, trajectoryVertices } from "./map_lines.js";
 
 const kFrustumDepth_m = 0.09;
 const kFullSizeExtent_m = 4;      // of the keyframes; in smaller maps they are drawn smaller
 const kLeastFrustumScale = 0.3;
+const kApart = 0.03;              // drawn keyframes, of the extent of all
+const kLeastApart_m = 0.02;
 const kEdgesEvery_ms = 500;
 const kTrajectoryEvery_ms = 200;
 const kBoundsEvery_ms = 1000;
@@ -35,8 +38,12 @@ export class MapLayer {
     this.trajectory = this.#anchored(THREE.LineSegments, "trajectory", lineMaterial(this.poses, look.trajectory));
     this.truth = this.#add(new THREE.Line(new THREE.BufferGeometry(), look.truthMaterial), "truth");
     this.dense = this.#add(new THREE.Group(), "dense");
+    this.moving = this.#add(new THREE.Group(), "moving");
+    this.plan = this.#add(new THREE.Group(), "plan");
+    this.clouds = new Map();   // part of a cloud -> what draws it
     this.shown = { points: [], keyframes: [this.frustums], edges: [this.covisibility, this.loops],
-                   trajectory: [this.trajectory], truth: [this.truth], dense: [this.dense] };
+                   trajectory: [this.trajectory], truth: [this.truth], dense: [this.dense],
+                   moving: [this.moving], plan: [this.plan] };
     this.pending = { edges: true, trajectory: true, bounds: true };
     this.times_ms = { edges: -Infinity, trajectory: -Infinity, bounds: -Infinity };
   }
@@ -48,7 +55,8 @@ export class MapLayer {
     if (changes.points.size > 0) this.#updatePoints(changes.points);
     if (changes.keyframes) this.#updateFrustums();
     if (changes.truth) this.truth.geometry.setAttribute("position", new THREE.Float32BufferAttribute(this.map.truth, 3));
-    if (changes.dense) this.#updateDense();
+    if (changes.dense) this.#updateClouds();
+    if (changes.plan) this.#updatePlan();
     this.pending.edges = this.pending.edges || changes.edges;
     this.pending.trajectory = this.pending.trajectory || changes.trajectoryFrom < Infinity ||
       (this.trajectoryGaps && changes.keyframes);
@@ -150,11 +158,8 @@ export class MapLayer {
   }
 
   #updateFrustums() {
-    const slots = [];
-    for (const keyframe of this.map.keyframes.values()) {
-      if (keyframe.posed && keyframe.alive) slots.push(keyframe.slot);
-    }
-    this.#setLines(this.frustums, frustumLines(slots, kFrustumDepth_m));
+    const apart_m = Math.max(kLeastApart_m, kApart * keyframeExtent_m(this.map));
+    this.#setLines(this.frustums, frustumLines(slotsApart(this.map, apart_m), kFrustumDepth_m));
   }
 
   #updateEdges() {
@@ -177,15 +182,43 @@ export class MapLayer {
     geometry.setDrawRange(0, slots.length);
   }
 
-  #updateDense() {
-    for (const part of this.dense.children) part.geometry.dispose();
-    this.dense.remove(...this.dense.children);
-    for (const { positions, colors } of this.map.dense.parts) {
-      const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-      geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3, true));
-      this.dense.add(new THREE.Points(geometry, this.look.denseMaterial));
+  #updateClouds() {
+    const before = this.clouds;
+    this.clouds = new Map();
+    this.#updateCloud(this.dense, this.map.dense.parts, this.look.denseMaterial, before);
+    this.#updateCloud(this.moving, this.map.moving.parts, this.look.movingMaterial, before);
+    for (const object of before.values()) {
+      object.parent.remove(object);
+      object.geometry.dispose();
     }
+  }
+
+  #updateCloud(group, parts, material, before) {
+    for (const part of parts) {
+      const object = before.get(part) ?? this.#cloudPart(part, material);
+      before.delete(part);
+      this.clouds.set(part, object);
+      group.add(object);
+    }
+  }
+
+  #cloudPart({ positions, colors }, material) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(colors, 3, true));
+    const object = new THREE.Points(geometry, material), count = positions.length / 3;
+    object.onBeforeRender = () => geometry.setDrawRange(0, Math.ceil(this.look.share * count));
+    return object;
+  }
+
+  #updatePlan() {
+    for (const object of this.plan.children) {
+      object.geometry.dispose();
+      object.material.map.dispose();
+      object.material.dispose();
+    }
+    this.plan.remove(...this.plan.children);
+    this.plan.add(planMesh(this.map.plan));
   }
 
   #updateBounds() {

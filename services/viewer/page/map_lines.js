@@ -12,6 +12,18 @@ const kCorners = [[-0.8, -0.6, 1], [0.8, -0.6, 1], [0.8, 0.6, 1], [-0.8, 0.6, 1]
 const kFull = [..."0123"].flatMap((i) => [[0, 0, 0], kCorners[i], kCorners[i], kCorners[(Number(i) + 1) % 4]]);
 const kSimple = [[0, 0, 0], kCorners[0], kCorners[0], kCorners[1], kCorners[1], [0, 0, 0]];
 
+/** Slots of keyframes that are so far from each other that they do not hide the map: the first of each cell of a grid. */
+export function slotsApart(map, apart_m) {
+  const taken = new Set(), slots = [];
+  for (const keyframe of map.keyframes.values()) {
+    if (!keyframe.posed || !keyframe.alive) continue;
+    const cell = [...map.pose(keyframe.slot).subarray(0, 3)].map((value) => Math.floor(value / apart_m)).join();
+    if (!taken.has(cell)) slots.push(keyframe.slot);
+    taken.add(cell);
+  }
+  return slots;
+}
+
 /** A small camera for every slot, or for every n-th of very many. */
 export function frustumLines(all, depth_m) {
   const stride = Math.ceil(all.length / kMaxFrustums) || 1, slots = all.filter((_, i) => i % stride === 0);

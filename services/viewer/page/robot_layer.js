@@ -85,6 +85,11 @@ export class RobotLayer {
     else label.position.set(x, min[1], max[2]);
   }
 
+  /** Texts in the scene, see spreadLabels(). */
+  labels() {
+    return [this.name, ...this.movers.children].filter((object) => object?.isSprite);
+  }
+
   /** T_scene_camera of the newest pose, or null. */
   cameraMatrix() {
     if (!this.camera.visible) return null;
@@ -156,16 +161,16 @@ export class RobotLayer {
     return true;
   }
 
-  #draw({ center, size, velocity, label }) {
+  #draw({ center, size, velocity, label, rests }) {
     const at = new THREE.Vector3(...center), way = new THREE.Vector3(...velocity).multiplyScalar(kVelocitySeconds);
     const box = new THREE.LineSegments(new THREE.EdgesGeometry(new THREE.BoxBufferGeometry(...size)), this.look.moverMaterial);
     box.position.copy(at);
-    const speed = `${(way.length() / kVelocitySeconds).toFixed(1)} m/s`;
-    const sprite = textSprite(`${label || "moving"} ${speed}`, this.look.moverMaterial.color, this.look);
+    const speed = rests ? "" : ` ${(way.length() / kVelocitySeconds).toFixed(1)} m/s`;
+    const sprite = textSprite(`${label || "object"}${speed}`, this.look.moverMaterial.color, this.look);
     const half = size.map((length) => length / 2);
     this.#putAbove(sprite, { min: center.map((middle, i) => middle - half[i]), max: center.map((middle, i) => middle + half[i]) });
     const parts = [box, sprite];
-    if (way.length() > 0.02) {
+    if (!rests && way.length() > 0.02) {
       parts.push(new THREE.ArrowHelper(way.clone().normalize(), at, way.length(), this.look.moverMaterial.color.getHex(),
                                        Math.min(0.15, 0.4 * way.length()), 0.08));
     }

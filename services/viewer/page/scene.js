@@ -11,6 +11,7 @@ import { FrameRate } from "./frame_rate.js";
 import { Look } from "./look.js";
 import { RobotLayer } from "./robot_layer.js";
 import { RobotState } from "./session.js";
+import { spreadLabels } from "./text_sprite.js";
 
 const kLargestPixelRatio = 2;
 const kLongestStep_s = 0.1;
@@ -101,7 +102,8 @@ export class Scene {
     map.setCovisibility({ blocks: [{ keyframe: 0, others: Uint32Array.of(1) }] });
     map.setTrajectory({ start: 0, keyframes: Uint32Array.of(0, 1), positions: new Float32Array(6) });
     map.setTruth({ start: 0, positions: new Float32Array(6) });
-    map.setDense({ start: 0, total: 1, positions: new Float32Array(3), colors: new Uint8Array(3) });
+    for (const set of ["setDense", "setMoving"]) map[set]({ start: 0, total: 1, positions: new Float32Array(3), colors: new Uint8Array(3) });
+    map.setPlan({ cell_m: 1, width: 1, height: 1, t: [0, 0, 0], q: [0, 0, 0, 1], runs: Uint8Array.of(0, 0) });
     robot.tracking = { state: "ok", pose: [0, 0, 0, 0, 0, 0, 1], map: 0 };
     robot.movers = [{ center: [0, 0, 0], size: [1, 1, 1], velocity: [1, 0, 0], label: "" }];
     const layer = new RobotLayer(robot, this.look);
@@ -155,6 +157,7 @@ export class Scene {
     this.look.share = this.resting ? 1 : this.detail.share;
     this.forced = this.resting = false;
     this.drawn_ms = now_ms;
+    spreadLabels([...this.robots.values()].flatMap((robot) => robot.labels()), this.camera);
     this.renderer.render(this.three, this.camera);
     this.rate.count(performance.now());
     this.measured += 1;

@@ -12,6 +12,7 @@ const kStageOrder = ["wait_detections", "extract", "masks", "ego_motion", "depth
 const kMapHandlers = {
   keyframe_poses: "setPoses", keyframes_removed: "remove", points: "setPoints", covisibility: "setCovisibility",
   loop_edges: "setLoops", trajectory: "setTrajectory", ground_truth: "setTruth", dense: "setDense",
+  moving: "setMoving", plan: "setPlan",
 };
 
 export class RobotState {

@@ -6,13 +6,14 @@
 const kKey = "rtd.viewer";
 
 export const kLayers = {
-  points: "Points", keyframes: "Keyframes", edges: "Edges", trajectory: "Trajectory",
-  movers: "Moving objects", truth: "Ground truth", dense: "Dense cloud", grid: "Grid",
+  dense: "Room", moving: "What moved", plan: "Floor plan", points: "Landmarks", keyframes: "Keyframes", edges: "Edges",
+  trajectory: "Trajectory", movers: "Moving objects", truth: "Ground truth", grid: "Grid",
 };
 
 const kDefaults = {
   themeChoice: "auto", large: false, coloring: "height",
-  layers: { points: true, keyframes: true, edges: true, trajectory: true, movers: true, truth: true, dense: false, grid: true },
+  layers: { dense: true, moving: false, plan: false, points: true, keyframes: true, edges: false, trajectory: true, movers: true,
+            truth: true, grid: true },
   overlays: { features: true, boxes: true, people: true, mask: true },
   closedPanels: [], tab: "image",
 };

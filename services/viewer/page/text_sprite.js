@@ -4,9 +4,11 @@
 // A label in the scene that always faces the viewer and is as large on the screen wherever it is.
 
 import * as THREE from "/three/build/three.module.js";
+import { stackLevels } from "./geometry.js";
 
 const kHeight_px = 20;           // on the screen
 const kDetail = 2;               // pixels of the texture for one of the screen
+const kBottom = -0.2;            // a label's lower edge is so many of its heights over its position
 const kKept = 40;
 const textures = new Map();   // text and colours -> {texture, aspect}; moving objects keep their labels for long
 
@@ -16,9 +18,19 @@ export function textSprite(text, color, look) {
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, depthTest: false, sizeAttenuation: false }));
   const height = kHeight_px * look.textScale * look.unitsPerPixel;
   sprite.scale.set(height * aspect, height, 1);
-  sprite.center.set(0.5, -0.2);
+  sprite.center.set(0.5, kBottom);
   sprite.renderOrder = 1;
   return sprite;
+}
+
+/** Texts that would cover each other are set above each other, the nearest lowest. */
+export function spreadLabels(sprites, camera) {
+  const halfHeight = Math.tan(camera.fov * Math.PI / 360), spot = new THREE.Vector3();   // of the picture, at distance 1
+  const seen = sprites.map((sprite) => {
+    const { x, y, z } = sprite.getWorldPosition(spot).project(camera);
+    return { sprite, z, x: x * camera.aspect * halfHeight, y: y * halfHeight, width: sprite.scale.x, height: sprite.scale.y };
+  }).sort((a, b) => a.z - b.z);
+  stackLevels(seen).forEach((level, i) => seen[i].sprite.center.set(0.5, kBottom - level));
 }
 
 function textureOf(text, style, background) {

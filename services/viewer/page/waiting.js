@@ -66,14 +66,18 @@ function ofTracking(robot, now_ms) {
   return report(level, title, detail);
 }
 
+/** Whether its camera or recording has come to its end. */
+export function hasEnded({ playback, services }) {
+  const sources = services.filter((service) => kSources.includes(service.name));
+  return playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => kEnded.includes(state)));
+}
+
 function withoutPoses(robot, age_ms) {
   const { playback, services } = robot;
   if (playback?.state === "paused") return { ...report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`), quiet: true };
-  const sources = services.filter((service) => kSources.includes(service.name));
-  if (playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => kEnded.includes(state)))) {
-    return report("wait", "The source has ended", "The map is kept until slam is restarted or the page is closed.");
-  }
+  if (hasEnded(robot)) return { ...report("wait", "The source has ended", "Its map stays as long as the viewer runs."), quiet: true };
   const slam = services.find((service) => service.name === "slam");
+  if (!slam && playback) return { ...report("wait", "No pose", `for ${Math.round(age_ms / 1000)} s of the recording`), quiet: true };
   if (!slam || kEnded.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");
   return report("warn", "No pose", `for ${Math.round(age_ms / 1000)} s. ${slam.message}`.trim());
 }

@@ -16,7 +16,9 @@ export class MapState {
     this.loops = new Uint32Array(0);
     this.trajectory = { keyframes: [], positions: [], length: 0 };
     this.truth = [];
-    this.dense = { total: 0, parts: [] };
+    this.dense = { parts: [] };      // [{start, positions, colors}]; the first points are spread over all
+    this.moving = { parts: [] };
+    this.plan = null;
     this.changes = new Changes();
     this.posedCount = 0;
     this.pointCount = 0;
@@ -108,11 +110,19 @@ export class MapState {
     this.changes.truth = true;
   }
 
-  setDense({ start, total, positions, colors }) {
-    if (start === 0) this.dense = { total, parts: [] };
-    this.dense.parts = this.dense.parts.filter((part) => part.start !== start);
-    this.dense.parts.push({ start, positions, colors });
+  setDense(message) {
+    this.dense = withPart(this.dense, message);
     this.changes.dense = true;
+  }
+
+  setMoving(message) {
+    this.moving = withPart(this.moving, message);
+    this.changes.dense = true;
+  }
+
+  setPlan(message) {
+    this.plan = message;
+    this.changes.plan = true;
   }
 
   /** A slot for a keyframe that is mentioned for the first time, by whatever message. */
@@ -152,17 +162,24 @@ export class MapState {
   }
 }
 
+/** A renewed cloud replaces the old one part by part, so that it does not vanish while it comes. */
+function withPart({ parts }, { start, total, positions, colors }) {
+  const others = parts.filter((part) => part.start !== start && part.start < total);
+  return { parts: [...others, { start, positions, colors }] };
+}
+
 class Changes {
   poses = false;
   keyframes = false;
   edges = false;
   truth = false;
   dense = false;
+  plan = false;
   points = new Set();            // ids of keyframes
   trajectoryFrom = Infinity;     // first entry that differs
 
   get any() {
-    return this.poses || this.keyframes || this.edges || this.truth || this.dense || this.points.size > 0 ||
+    return this.poses || this.keyframes || this.edges || this.truth || this.dense || this.plan || this.points.size > 0 ||
       this.trajectoryFrom < Infinity;
   }
 }

@@ -79,6 +79,7 @@ TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2)
   check(kPath);
   check(kMapPoints);
   check(kDensePoints);
+  check(kMovingPoints);
   check(kDiagnostics);
   check(kOccupancyGrid);
 }

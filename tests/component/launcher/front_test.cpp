@@ -93,13 +93,29 @@ TEST_F(FrontTest, a_replay_with_viewer_gives_it_the_same_bus_and_ends_it) {
                                          << " ]; do sleep 0.02; done\necho \"played: $*\"\nexit 3\n";
   for (const char* name : {"rtd-viewer", "rtd-replay"}) fs::permissions(scratch_ / name, fs::perms::owner_all);
   EXPECT_EQ(rtd_.run({"replay", "a.mcap", "--viewer", "--domain", "9", "--rate", "2", "--set", "viewer.port=81"}), 3);
-  EXPECT_EQ(rtd_.output(), "played: a.mcap --domain 9 --rate 2 --set viewer.port=81\n");
+  EXPECT_EQ(rtd_.output(), "played: a.mcap --domain 9 --rate 2 --set viewer.port=81 --wait-page --hold\n");
   pid_t viewer = 0;
   std::string arguments;
   std::getline(std::ifstream(received) >> viewer, arguments);
-  EXPECT_EQ(arguments, " --set viewer.port=81 --domain=9 --log-level warning");
+  EXPECT_EQ(arguments, " --set viewer.port=81 --domain=9 --log-level warning --open");
   for (int i = 0; i < 2000 && kill(viewer, 0) == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   EXPECT_NE(kill(viewer, 0), 0) << "it still runs";
+}
+
+TEST_F(FrontTest, what_viewer_is_to_do_is_passed_on_or_explained) {
+  std::ofstream(scratch_ / "rtd-viewer") << "#!/bin/sh\nexec sleep 60\n";
+  std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\necho \"played: $*\"\n";
+  for (const char* name : {"rtd-viewer", "rtd-replay"}) fs::permissions(scratch_ / name, fs::perms::owner_all);
+  const auto played = [this](const std::string& option) {
+    rtd_.run({"replay", "a.mcap", option});
+    return rtd_.output();
+  };
+  EXPECT_EQ(played("--viewer=now"), "played: a.mcap --hold\n");
+  EXPECT_EQ(played("--viewer=exit"), "played: a.mcap --wait-page\n");
+  EXPECT_EQ(played("--viewer=now,exit"), "played: a.mcap\n");
+  EXPECT_THAT(played("--viewer=later"), HasSubstr("--viewer=now (no wait)"));
+  EXPECT_EQ(rtd_.run({"run", "--source", "synthetic:office", "--out", scratch_ / "out", "--viewer=later"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--viewer=now (no wait)"));
 }
 
 TEST_F(FrontTest, a_replay_without_the_viewer_that_it_is_to_have_does_not_start) {

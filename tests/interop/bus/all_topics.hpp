@@ -41,6 +41,7 @@ void for_each_topic(Visitor visit) {
   visit(kPath);
   visit(kMapPoints);
   visit(kDensePoints);
+  visit(kMovingPoints);
   visit(kDiagnostics);
   visit(kMap);
   visit(kMovers);

@@ -193,7 +193,7 @@ test("what is hidden is not asked for", async () => {
   await page.click("#panel-image > summary");
   await waitFor(page, () => !document.getElementById("panel-image").open);
   await page.click("#layer-dense");
-  await until(() => server.wanted.some(({ image, mask, features, dense }) => !image && !mask && !features && dense));
+  await until(() => server.wanted.some(({ image, mask, features, dense }) => !image && !mask && !features && !dense));
 });
 
 test("a message that cannot be read is counted, and the page continues", async () => {

@@ -16,6 +16,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Processes that end when the test says so.
 class FakeHost : public process::ProcessHost {
@@ -374,6 +375,34 @@ TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
   supervisor.stop(now, milliseconds(5000), RunOutcome::kInterrupted);
   supervisor.stop(now, milliseconds(0), RunOutcome::kInterrupted);
   EXPECT_THAT(host.terminated, Contains("record"));
+}
+
+TEST_F(SupervisorTest, who_outlives_the_run_ends_when_asked) {
+  supervisor.start({.name = "viewer", .command = {"rtd-viewer"}, .role = ServiceRole::kOptional, .ends_last = true,
+                    .outlives_run = true},
+                   now);
+  start_all();
+  supervisor.stop(now, milliseconds(1000), RunOutcome::kComplete);
+  advance(milliseconds(10));
+  EXPECT_TRUE(supervisor.all_ended()) << "of the run";
+  EXPECT_THAT(host.terminated, Not(Contains("viewer")));
+  EXPECT_TRUE(supervisor.rest_runs());
+  supervisor.end_rest(now, milliseconds(1000));
+  advance(milliseconds(10));
+  EXPECT_THAT(host.terminated, Contains("viewer"));
+  EXPECT_FALSE(supervisor.rest_runs());
+}
+
+TEST_F(SupervisorTest, an_interrupted_run_is_outlived_by_none) {
+  supervisor.start({.name = "viewer", .command = {"rtd-viewer"}, .role = ServiceRole::kOptional, .ends_last = true,
+                    .outlives_run = true},
+                   now);
+  start_all();
+  supervisor.stop(now, milliseconds(1000), RunOutcome::kInterrupted);
+  advance(milliseconds(10));
+  advance(milliseconds(10));
+  EXPECT_THAT(host.terminated, Contains("viewer"));
+  EXPECT_TRUE(supervisor.all_ended());
 }
 
 TEST_F(SupervisorTest, a_restarted_service_gets_the_arguments_of_that_moment) {

@@ -258,6 +258,15 @@ TEST_F(PlayerTest, a_loop_begins_again_until_it_is_stopped) {
   EXPECT_THAT(host.times_ms(), ElementsAre(0, 10, 20, 20, 30, 40, 40));
 }
 
+TEST_F(PlayerTest, held_at_the_end_it_pauses_there_and_begins_again_when_resumed) {
+  options.hold = true;
+  host.at(100, Command::kTogglePause);
+  host.at(300, Command::kStop);
+  EXPECT_EQ(play(numbered(3)), PlayOutcome::kStopped);
+  EXPECT_THAT(host.payloads(), ElementsAre("0", "1", "2", "0", "1", "2"));
+  EXPECT_THAT(host.times_ms(), ElementsAre(0, 10, 20, 100, 110, 120));
+}
+
 TEST_F(PlayerTest, the_clock_ticks_at_its_rate_and_stands_in_a_pause) {
   options.clock_period_ns = 10 * kMillisecond;
   options.rate = 2;

@@ -195,6 +195,27 @@ TEST_F(PageSessionTest, images_are_those_of_the_robot_that_is_looked_at) {
   EXPECT_TRUE(hub.options(0)->image) << "another page shows all";
 }
 
+TEST_F(PageSessionTest, an_overlay_that_comes_after_its_image_is_sent_then) {
+  RobotMirror* robot = hub.robot("");
+  const auto page = hub.open();
+  msg::CompressedImage image{.format = "jpeg", .data = {1, 2, 3}};
+  image.header.stamp.sec = 1;
+  robot->add(image);
+  take(*page, kSecond);
+  const auto frame = std::make_unique<msg::FeatureFrame>();
+  frame->stamp_ns = kSecond;
+  robot->add(*frame);
+  auto sent = take(*page, 2 * kSecond);
+  EXPECT_TRUE(sent.contains("binary 9"));
+  EXPECT_FALSE(sent.contains("binary 8")) << "the page has the image";
+  msg::Image mask{.header = image.header, .height = 1, .width = 2, .encoding = "mono8", .step = 2, .data = {0, 255}};
+  robot->add(mask);
+  sent = take(*page, 3 * kSecond);
+  EXPECT_TRUE(sent.contains("binary 11"));
+  EXPECT_FALSE(sent.contains("binary 9"));
+  EXPECT_FALSE(take(*page, 4 * kSecond).contains("binary 11")) << "once";
+}
+
 TEST_F(PageSessionTest, robots_share_the_budget_fairly) {
   RobotMirror* robots[] = {hub.robot("anna"), hub.robot("bert"), hub.robot("carl")};
   const auto page = hub.open();

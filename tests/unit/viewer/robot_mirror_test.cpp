@@ -11,6 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "services/viewer/core/page_messages.hpp"
 #include "tests/support/sanitizers.hpp"
 
 namespace rtd::viewer {
@@ -65,13 +66,52 @@ TEST(RobotMirror, a_view_is_an_image_with_the_overlays_of_its_frame) {
   EXPECT_EQ(at<std::uint8_t>(view->features, 31), 255);
 }
 
+TEST(RobotMirror, on_a_busy_host_no_image_without_features_replaces_one_with_features) {
+  RobotMirror mirror(0);
+  mirror.add(image(1000));
+  mirror.add(*features(1000));
+  for (int ms = 1033; ms < 2500; ms += 33) {
+    mirror.add(image(ms));
+    EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'000'000'000) << "at " << ms;
+  }
+  mirror.add(*features(1066));
+  EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'066'000'000);
+}
+
 TEST(RobotMirror, without_a_filter_the_image_is_shown_alone) {
   RobotMirror mirror(0);
-  mirror.add(*features(1000));
-  mirror.add(image(2000));
+  mirror.add(image(1000));
+  EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'000'000'000) << "no filter yet";
+  mirror.add(*features(1001));
+  mirror.add(image(2002));
+  EXPECT_FALSE(mirror.newest_view().has_value()) << "its features may still come";
+  mirror.add(image(3100));
   const auto view = mirror.newest_view();
-  EXPECT_EQ(view->stamp_ns, 2'000'000'000);
+  EXPECT_EQ(view->stamp_ns, 3'100'000'000) << "the filter has ended";
   EXPECT_EQ(view->features, nullptr);
+}
+
+TEST(RobotMirror, a_filter_that_looks_at_other_images_does_not_hide_these) {
+  RobotMirror mirror(0);
+  for (int ms = 1000; ms < 4000; ms += 33) {
+    mirror.add(image(ms));
+    mirror.add(*features(ms + 10));
+  }
+  ASSERT_TRUE(mirror.newest_view().has_value());
+  EXPECT_NE(mirror.newest_view()->image, nullptr);
+}
+
+json mover_message(double speed_mps, double sigma_mps) {
+  msg::Movers movers;
+  movers.movers.push_back({.velocity_mps = {speed_mps, 0, 0}});
+  for (std::size_t place = 0; place < 36; place += 7) movers.movers[0].covariance[place] = sigma_mps * sigma_mps;
+  return json::parse(page::movers(0, movers))["movers"][0];
+}
+
+TEST(RobotMirror, an_object_rests_if_its_speed_may_be_noise) {
+  EXPECT_TRUE(mover_message(0.3, 0.15)["rests"]);
+  EXPECT_FALSE(mover_message(0.6, 0.15)["rests"]);
+  EXPECT_TRUE(mover_message(0, 0)["rests"]) << "without a covariance";
 }
 
 TEST(RobotMirror, boxes_of_a_slow_detector_stay_for_a_moment) {
@@ -173,21 +213,21 @@ TEST(RobotMirror, dense_points_keep_place_and_colour) {
   cloud.data[12] = 10;
   cloud.data[13] = 20;
   cloud.data[14] = 30;  // blue, green, red
-  mirror.add(cloud);
-  const auto& dense = mirror.dense();
+  mirror.add(CloudKind::kStatic, cloud);
+  const auto& dense = mirror.dense(CloudKind::kStatic);
   ASSERT_EQ(dense.points.size(), 18U);
   std::int16_t x = 0;
   std::memcpy(&x, dense.points.data(), 2);
   EXPECT_NEAR(dense.origin_m.x() + static_cast<float>(x) * dense.scale_m, 1, 1e-3);
   EXPECT_EQ(std::to_integer<int>(dense.points[6]), 30);
   cloud.point_step = 8;
-  mirror.add(cloud);
-  EXPECT_EQ(mirror.dense().revision, 1U) << "fields beyond a point are refused";
+  mirror.add(CloudKind::kStatic, cloud);
+  EXPECT_EQ(mirror.dense(CloudKind::kStatic).revision, 1U) << "fields beyond a point are refused";
   cloud.point_step = 16;
   for (const std::uint32_t offset : {0xFFFFFFFCU, 0xFFFFFFFFU, 13U}) {
     cloud.fields[2].offset = offset;
-    mirror.add(cloud);
-    EXPECT_EQ(mirror.dense().revision, 1U) << "an offset of " << offset;
+    mirror.add(CloudKind::kStatic, cloud);
+    EXPECT_EQ(mirror.dense(CloudKind::kStatic).revision, 1U) << "an offset of " << offset;
   }
 }
 

@@ -9,7 +9,8 @@ import { currentArgument, describe, isIdle, panelCommands } from "../../../servi
 import { liveAddress, retryDelay_ms } from "../../../services/viewer/page/connection.js";
 import { Detail } from "../../../services/viewer/page/detail.js";
 import { DrawPace, isLoopback } from "../../../services/viewer/page/draw_pace.js";
-import { clockTime, length, ms, rate } from "../../../services/viewer/page/format.js";
+import { axisMark, clockTime, length, ms, rate } from "../../../services/viewer/page/format.js";
+import { stackLevels } from "../../../services/viewer/page/geometry.js";
 import { PoseAge } from "../../../services/viewer/page/pose_age.js";
 import { niceCeiling, percentile, Series } from "../../../services/viewer/page/series.js";
 import { byHost, detectorLine, linkTopics, summarize } from "../../../services/viewer/page/services.js";
@@ -30,6 +31,16 @@ test("a series forgets what is old, and begins again when time goes back", () =>
 
 test("axes end at round numbers", () => {
   assert.deepEqual([0, 0.3, 1, 21, 50, 51, 730].map(niceCeiling), [1, 0.5, 1, 50, 50, 100, 1000]);
+});
+
+test("marks of an axis are short", () => {
+  assert.deepEqual([0, 0.25, 250, 5000, 10_000, 200_000].map(axisMark), ["0", "0.25", "250", "5000", "10k", "200k"]);
+});
+
+test("labels that would cover each other are stacked", () => {
+  const label = (x, y) => ({ x, y, width: 4, height: 1 });
+  assert.deepEqual(stackLevels([label(0, 0), label(3, 0.5), label(6, 0), label(1, 0)]), [0, 1, 0, 3]);
+  assert.deepEqual(stackLevels([label(0, 0), label(0, 1)]), [0, 0], "they may touch");
 });
 
 test("the clock offset is that of the fastest ping, and 0 within what a ping can resolve", () => {
@@ -118,7 +129,7 @@ test("slow frames lower the share of points that is drawn, fast ones raise it to
   draw(150, 5);
   assert.ok(detail.share < 0.7);
   draw(150, 50);
-  assert.equal(detail.share, 0.2);
+  assert.equal(detail.share, 0.05);
   draw(5000, 1);
   draw(33, 60);
   assert.equal(detail.share, 1);

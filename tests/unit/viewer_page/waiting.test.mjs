@@ -54,6 +54,9 @@ test("when no pose comes, the reason: paused, ended, slam gone, unknown", () => 
   assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "ended" } }), 10_000), "The source has ended");
   assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 10_000), "The source has ended");
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")], tracked("ok")), 10_000), "slam is gone");
+  const sparse = robotWith([service("replay")], { ...tracked("ok"), playback: { state: "playing", position_s: 5 } });
+  assert.deepEqual([title(sparse, 4000), situation({ connection: open, hello, robot: sparse, now_ms: 4000 }).level], ["No pose", "wait"],
+                   "a recording needs no slam");
 });
 
 test("a server of another protocol is not tried", () => {

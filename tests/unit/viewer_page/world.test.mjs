@@ -5,7 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { decode } from "../../../services/viewer/page/decode.js";
 import { mapBounds, transform } from "../../../services/viewer/page/geometry.js";
-import { edgeSlots, frustumLines, trajectoryVertices } from "../../../services/viewer/page/map_lines.js";
+import { edgeSlots, frustumLines, slotsApart, trajectoryVertices } from "../../../services/viewer/page/map_lines.js";
 import { kFirstSlots, MapState } from "../../../services/viewer/page/world.js";
 import * as encode from "../../support/viewer_page/encode.mjs";
 
@@ -101,6 +101,9 @@ test("start 0 begins trajectory, ground truth and dense cloud again", () => {
   map.setDense(decoded(encode.densePoints(0, 2, [0, 0, 0], 1, [[0, 0, 0, 0, 0, 0]])));
   map.setDense(decoded(encode.densePoints(1, 2, [0, 0, 0], 1, [[0, 0, 0, 0, 0, 0]])));
   assert.equal(map.dense.parts.length, 2);
+  const [, kept] = map.dense.parts;
+  map.setDense(decoded(encode.densePoints(0, 2, [0, 0, 0], 1, [[1, 0, 0, 0, 0, 0]])));
+  assert.deepEqual([map.dense.parts.length, map.dense.parts.includes(kept)], [2, true], "a renewed cloud comes part by part");
   map.setDense(decoded(encode.densePoints(0, 1, [0, 0, 0], 1, [[0, 0, 0, 0, 0, 0]])));
   assert.deepEqual([map.trajectory.length, map.truth, map.dense.parts.length], [1, [3, 3, 3], 1]);
 });
@@ -123,4 +126,11 @@ test("bounds: without outliers, with all keyframes, none for an empty map", () =
 test("many keyframes are drawn with fewer lines each", () => {
   const lines = (n) => frustumLines(Array.from({ length: n }, (_, i) => i), 0.1).slots.length / n;
   assert.ok(lines(10) > lines(5000));
+});
+
+test("keyframes that are close together are drawn once", () => {
+  const map = mapWith(0, 1, 2, 3, 4, 5);
+  assert.deepEqual([slotsApart(map, 0.5).length, slotsApart(map, 2.5)], [6, [0, 3, 5]]);
+  map.remove({ ids: [0] });
+  assert.deepEqual(slotsApart(map, 2.5), [1, 3, 5]);
 });

@@ -49,7 +49,7 @@ void Supervisor::update(Clock now) {
   }
   if (!stopping_ || !others_ended()) return;
   for (Child& child : children_) {
-    if (!child.asked) ask_to_end(child, now + grace_);
+    if (!child.asked && !goes_on(child)) ask_to_end(child, now + grace_);
   }
 }
 
@@ -77,11 +77,18 @@ void Supervisor::watch(Child& child, Clock now) {
 void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
   decide(why);
   const bool again = std::exchange(stopping_, true);
+  rest_ends_ = rest_ends_ || again || why == RunOutcome::kInterrupted || why == RunOutcome::kConfigError;
   grace_ = grace;
   for (Child& child : children_) {
+    if (goes_on(child)) continue;
     const Clock kill_at = child.asked ? std::min(child.kill_at, now + grace) : now + grace;
     if (again || !child.plan.ends_last || child.state != State::kRunning) ask_to_end(child, kill_at);
   }
+}
+
+void Supervisor::end_rest(Clock now, Clock grace) {
+  rest_ends_ = true;
+  for (Child& child : children_) ask_to_end(child, now + grace);
 }
 
 void Supervisor::ask_to_end(Child& child, Clock kill_at) {
@@ -96,7 +103,16 @@ bool Supervisor::others_ended() const {
 }
 
 bool Supervisor::all_ended() const {
-  return std::ranges::all_of(children_, [](const Child& c) { return c.state == State::kEnded; });
+  return std::ranges::all_of(children_, [this](const Child& c) { return goes_on(c) || c.state == State::kEnded; });
+}
+
+bool Supervisor::rest_runs() const {
+  return std::ranges::any_of(children_, [](const Child& c) { return c.plan.outlives_run && c.state != State::kEnded; });
+}
+
+bool Supervisor::runs(const std::string& service) const {
+  return std::ranges::any_of(children_,
+                             [&](const Child& c) { return c.plan.name == service && c.state != State::kEnded; });
 }
 
 std::vector<std::pair<std::string, process::ProcessId>> Supervisor::running() const {

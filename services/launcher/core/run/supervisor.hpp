@@ -27,6 +27,7 @@ struct ServicePlan {
   ServiceRole role = ServiceRole::kEssential;
   int niceness = 0;        ///< see ProcessSpec
   bool ends_last = false;  ///< stopped after all others: a recorder still receives their last messages
+  bool outlives_run = false;  ///< not stopped with a run that ended by itself, but by end_rest()
   /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
   /// Of a live camera: whether it has ever given a frame. One that gave up before is not started again, because it has
@@ -75,13 +76,20 @@ class Supervisor {
   /// when it was not called for a second, the launcher itself stood still, and all services have that time on top.
   void update(Clock now);
   /// Asks every service to end, those with ends_last after the others; update() kills those still there `grace` after
-  /// they were asked. The first outcome stays. A second stop asks all at once.
+  /// they were asked. The first outcome stays. A second stop asks all at once. Those that outlive the run go on, unless
+  /// it was interrupted or refused.
   void stop(Clock now, Clock grace, RunOutcome why);
 
   RunOutcome outcome() const { return outcome_; }
   bool stopping() const { return stopping_; }
-  /// No process is left.
+  /// Asks those that outlive the run to end.
+  void end_rest(Clock now, Clock grace);
+  /// No process of the run is left; those that outlive it may be.
   bool all_ended() const;
+  /// One that outlives the run is there.
+  bool rest_runs() const;
+  /// It runs or is about to be restarted.
+  bool runs(const std::string& service) const;
   /// Name and id of every process that runs now.
   std::vector<std::pair<std::string, process::ProcessId>> running() const;
 
@@ -106,6 +114,7 @@ class Supervisor {
   void watch(Child& child, Clock now);
   void forgive_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
+  bool goes_on(const Child& child) const { return child.plan.outlives_run && !rest_ends_; }
   bool others_ended() const;
   void decide(RunOutcome outcome);
   void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
@@ -116,7 +125,7 @@ class Supervisor {
   std::function<void(const SupervisorEvent&)> on_event_;
   std::vector<Child> children_;
   RunOutcome outcome_ = RunOutcome::kRunning;
-  bool stopping_ = false;
+  bool stopping_ = false, rest_ends_ = false;
   Clock grace_{}, updated_{};
 };
 
