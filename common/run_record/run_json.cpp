@@ -115,6 +115,7 @@ Json record_json(const RunRecord& record) {
             {"dds", record.dds},
             {"detector", record.detector},
             {"interrupted", record.interrupted},
+            {"z_up", record.z_up},
             {"duration_s", to_value(record.duration_s)},
             {"frames_in", record.frames_in},
             {"frames_left_out", record.frames_left_out},
@@ -204,6 +205,7 @@ RunRecord read_record(const Json& json) {
   from_value(json.at("duration_s"), record.duration_s);
   json.at("frames_in").get_to(record.frames_in);
   json.at("frames_dropped").get_to(record.frames_dropped);
+  record.z_up = json.value("z_up", false);
   record.frames_left_out = json.value("frames_left_out", std::uint64_t{0});  // earlier versions did not write them
   record.frames_out_of_range = json.value("frames_out_of_range", std::uint64_t{0});
   if (json.contains("depth_median_m")) from_value(json.at("depth_median_m"), record.depth_median_m);

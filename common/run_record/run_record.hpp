@@ -83,6 +83,7 @@ struct RunRecord {
   std::string version;                                   ///< of rtd
   std::string source, pace, filter_mode, dds, detector;  ///< as given; detector: model name or "off (reason)"
   bool interrupted = false;                              ///< Ctrl-C ended the run
+  bool z_up = false;                                     ///< of the map: that of a robot with a base; else y is down
   double duration_s = 0;                                 ///< from the first frame to the last pose
   std::uint64_t frames_in = 0;                           ///< frames the source delivered
   std::uint64_t frames_left_out = 0;                     ///< frames that it had and could not deliver

@@ -12,6 +12,7 @@
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/map_page/map_page.hpp"
 #include "common/occupancy/octomap_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
@@ -120,7 +121,7 @@ int write_plan(const MapRequest& request, const occupancy::Volume& volume, const
 
 /// Of a voxel map (.bt). Returns the exit code.
 int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& err) {
-  if (request.format == "tum" || request.format == "bt")
+  if (request.format == "tum" || request.format == "bt" || request.format == "html")
     throw UsageError(request.file + " is a voxel map: it is exported as pgm, ply or pcd");
   std::ifstream file(request.file, std::ios::binary);
   const occupancy::Volume volume = occupancy::read_octomap(file);
@@ -148,12 +149,40 @@ int write_export(const MapRequest& request, std::ostream& out, std::ostream& err
   if (request.format == "bt")
     err << "rtd map export: surfaces without landmarks are missing in this voxel map; 'rtd run --dense' writes a full "
            "one, map.bt\n";
+  if (request.format == "html") return write_page(request, contents, part, out, err);
   const auto write_to = [&](std::ostream& file) { write_part(contents, part, request.format, file); };
   if (!write_file(request.out, err, write_to)) return service::kRunFailed;
   out << fmt::format("{}: {} of map {}\n", request.out,
                      request.format == "tum" ? fmt::format("{} keyframe poses", part.keyframes)
                                              : fmt::format("{} landmarks", part.landmarks),
                      part.id);
+  return service::kOk;
+}
+
+/// Red where a landmark may move, blue where it stays.
+map_page::Color color_of(float static_probability) {
+  const auto level = static_cast<std::uint8_t>(255 * std::clamp(static_probability, 0.0F, 1.0F));
+  return {static_cast<std::uint8_t>(255 - level / 2), 120, level};
+}
+
+/// Landmarks, coloured by how certainly they stay, and the path of the keyframes. Returns the exit code.
+int write_page(const MapRequest& request, const slam::MapContents& contents, const MapPart& part, std::ostream& out,
+               std::ostream& err) {
+  map_page::Layer landmarks{.name = "Landmarks"};
+  for (const slam::MapPoint& point : points_of(contents, part.id)) {
+    landmarks.points_m.push_back(point.position);
+    landmarks.colors.push_back(color_of(point.static_probability));
+  }
+  map_page::Layer path{.name = "Path of the keyframes", .line = true, .color = {63, 208, 127}};
+  for (const geometry::StampedPose& pose : poses_of(contents, part.id))
+    path.points_m.push_back(pose.T_world_body.translation().cast<float>());
+  const map_page::Page page{.title = fs::path(request.file).filename().string(),
+                            .facts = {{"Map", std::to_string(part.id)},
+                                      {"Keyframes", std::to_string(part.keyframes)},
+                                      {"Landmarks", std::to_string(part.landmarks)}},
+                            .layers = {std::move(landmarks), std::move(path)}};
+  if (!write_file(request.out, err, [&](std::ostream& file) { file << map_page::html(page); })) return service::kRunFailed;
+  out << fmt::format("{}: {} landmarks of map {}, to open in a browser\n", request.out, part.landmarks, part.id);
   return service::kOk;
 }
 
@@ -171,14 +200,14 @@ void add_map_commands(CLI::App& app, MapRequest& request) {
   info->callback([&request] { request.info = true; });
   info->footer(kExitCodes);
   CLI::App* to_export = app.add_subcommand("export",
-                                           "Export landmarks as PLY, PCD or OctoMap, keyframe poses in TUM "
+                                           "Export landmarks as page, PLY, PCD or OctoMap, keyframe poses in TUM "
                                            "format; voxel maps (.bt) as floor plan, PLY or PCD");
   to_export->add_option("file", request.file, "Map file, or a voxel map of rtd-dense (map.bt)")->required();
   to_export
       ->add_option("--format", request.format,
-                   "ply, pcd (landmarks, occupied cells), tum (keyframe poses), bt (OctoMap of the landmarks) or pgm "
-                   "(floor plan of a voxel map, with a YAML file beside it)")
-      ->check(CLI::IsMember({"ply", "pcd", "tum", "bt", "pgm"}))
+                   "html (to look at in a browser), ply, pcd (landmarks, occupied cells), tum (keyframe poses), bt "
+                   "(OctoMap of the landmarks) or pgm (floor plan of a voxel map, with a YAML file beside it)")
+      ->check(CLI::IsMember({"html", "ply", "pcd", "tum", "bt", "pgm"}))
       ->required();
   to_export->add_option("-o,--out", request.out, "New file; nothing is overwritten")->required();
   to_export->add_option("--map-id", request.map_id, "Map of the file (default: the one with most keyframes)")

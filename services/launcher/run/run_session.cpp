@@ -256,6 +256,7 @@ run_record::RunRecord RunSession::record() const {
   record.filter_mode = setup_.services.filter_mode;
   record.dds = setup_.bus_options.vendor;
   record.detector = setup_.detector_note;
+  record.z_up = setup_.services.base.z_up();
   record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
   collector_.fill(record);
   record.events = events_;

@@ -320,7 +320,7 @@ void clear_out_dir(const RunSetup& setup) {
   }
   for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
                            "static_map.ply", "map.pgm", "map.yaml", "map.bt", "background.png", "groundtruth.txt",
-                           "run.json", "report.json", "report.html"}) {
+                           "run.json", "report.json", "report.html", "map.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);

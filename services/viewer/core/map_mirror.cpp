@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::viewer {
@@ -116,19 +117,25 @@ void MapMirror::set_edges(MirroredKeyframe& keyframe, const std::vector<std::uin
   edge_count_ += room;
 }
 
-void MapMirror::add_position(std::uint32_t map_id, const Eigen::Vector3d& position_m) {
-  if (map_id != 0 || !position_m.allFinite()) return;
+void MapMirror::add_position(const msg::TrackingResult& result) {
+  const Eigen::Vector3d position_m(result.T_world_camera.translation_m.data());
+  if (result.map_id != 0 || !position_m.allFinite()) return;
   if (trajectory_.size() >= limits_.trajectory) {
     ++left_out_;
     return;
   }
-  const Eigen::Vector3f position = position_m.cast<float>();
+  const Eigen::Map<const geometry::Matrix6d> covariance(result.covariance.data());
+  TrajectoryPoint point{.position_m = position_m.cast<float>(),
+                        .stamp_ns = result.stamp_ns,
+                        .sigma_m = static_cast<float>(geometry::largest_sigma(covariance.topLeftCorner<3, 3>())),
+                        .state = result.state};
   for (auto newest = keyframes_.rbegin(); newest != keyframes_.rend(); ++newest) {
     if (newest->second.removed || newest->second.map_id != 0) continue;
-    trajectory_.push_back({newest->first, newest->second.T_world_camera.inverse() * position});
-    return;
+    point.keyframe = newest->first;
+    point.position_m = newest->second.T_world_camera.inverse() * point.position_m;
+    break;
   }
-  trajectory_.push_back({TrajectoryPoint::kNone, position});
+  trajectory_.push_back(point);
 }
 
 }  // namespace rtd::viewer

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/msg/map_update.hpp"
+#include "common/msg/tracking.hpp"
 
 namespace rtd::viewer {
 
@@ -53,6 +54,9 @@ struct MirroredKeyframe {
 struct TrajectoryPoint {
   std::uint32_t keyframe = kNone;
   Eigen::Vector3f position_m;
+  std::int64_t stamp_ns = 0;
+  float sigma_m = 0;  ///< standard deviation in the direction in which it is largest
+  msg::TrackingState state = msg::TrackingState::kOk;
   static constexpr std::uint32_t kNone = UINT32_MAX;  ///< in the world frame
 };
 
@@ -74,8 +78,8 @@ class MapMirror {
   void add(const msg::MapUpdate& update);
   /// Only the pose, or that it is gone.
   void add(const msg::KeyframeEvent& event);
-  /// A measured camera position in the world frame of `map_id`. Positions in maps other than the first are left out.
-  void add_position(std::uint32_t map_id, const Eigen::Vector3d& position_m);
+  /// A measured camera pose. Those in maps other than the first are left out.
+  void add_position(const msg::TrackingResult& result);
   /// Forgets everything.
   void reset();
 

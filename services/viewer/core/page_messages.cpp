@@ -114,6 +114,19 @@ Bytes trajectory(std::uint8_t robot, std::uint32_t start, std::span<const Trajec
   return writer.take();
 }
 
+Bytes trajectory_values(std::uint8_t robot, std::uint32_t start, std::int64_t begin_ns,
+                        std::span<const TrajectoryPoint> points, std::span<const float> errors_m) {
+  ByteWriter writer = begin(Kind::kTrajectoryValues, robot, 0, points.size());
+  writer.put(start);
+  for (std::size_t place = 0; place < points.size(); ++place) {
+    writer.put(static_cast<std::uint32_t>(points[place].state));
+    writer.put(static_cast<float>(1e-9 * static_cast<double>(msg::minus_ns(points[place].stamp_ns, begin_ns))));
+    writer.put(points[place].sigma_m);
+    writer.put(errors_m[place]);
+  }
+  return writer.take();
+}
+
 Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vector3f> points_m) {
   ByteWriter writer = begin(Kind::kTruth, robot, 0, points_m.size());
   writer.put(start);

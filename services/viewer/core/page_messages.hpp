@@ -39,6 +39,7 @@ enum class Kind : std::uint8_t {
   kPeople = 13,
   kMoving = 14,
   kPlan = 15,
+  kTrajectoryValues = 16,
 };
 
 /// What every binary message begins with.
@@ -59,6 +60,9 @@ Bytes points(std::uint8_t robot, std::uint32_t map_id, std::span<const KeyframeR
 Bytes covisibility(std::uint8_t robot, std::span<const KeyframeRef> keyframes);
 Bytes loop_edges(std::uint8_t robot, std::span<const std::uint32_t> pairs);
 Bytes trajectory(std::uint8_t robot, std::uint32_t start, std::span<const TrajectoryPoint> points);
+/// `errors_m`: of the same points, NaN where unknown. `begin_ns`: from which their times are counted.
+Bytes trajectory_values(std::uint8_t robot, std::uint32_t start, std::int64_t begin_ns,
+                        std::span<const TrajectoryPoint> points, std::span<const float> errors_m);
 Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vector3f> points_m);
 
 Bytes image(std::uint8_t robot, const msg::CompressedImage& image);

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/viewer/core/page_session.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/service/json_text.hpp"
 #include "services/viewer/core/page_messages.hpp"
@@ -176,6 +178,7 @@ std::optional<Frame> PageSession::next_of(const RobotMirror& robot, Sent& sent, 
   if (auto frame = next_poses(robot, sent)) return frame;
   if (auto frame = next_edges(robot, sent)) return frame;
   if (auto frame = next_trajectory(robot, sent)) return frame;
+  if (auto frame = next_values(robot, sent)) return frame;
   if (auto frame = next_truth(robot, sent)) return frame;
   if (auto frame = next_view(robot, sent, now_ns)) return frame;
   if (auto frame = next_points(robot, sent)) return frame;
@@ -246,6 +249,23 @@ std::optional<Frame> PageSession::next_trajectory(const RobotMirror& robot, Sent
   sent.trajectory += count;
   return binary_frame(
       page::trajectory(robot.index(), static_cast<std::uint32_t>(start), std::span(trajectory).subspan(start, count)));
+}
+
+/// Of what the page has of the trajectory, some at a time; all again when the errors are others.
+std::optional<Frame> PageSession::next_values(const RobotMirror& robot, Sent& sent) const {
+  constexpr std::size_t kFewest = 10;
+  const TruthTrack& truth = robot.truth();
+  if (std::exchange(sent.values_revision, truth.revision()) != truth.revision()) sent.values = 0;
+  if (sent.trajectory < sent.values + kFewest) return std::nullopt;
+  const auto& trajectory = robot.map().trajectory();
+  const std::size_t start = sent.values, count = std::min(kChunkPositions, sent.trajectory - start);
+  const auto points = std::span(trajectory).subspan(start, count);
+  std::vector<float> errors_m;
+  for (const TrajectoryPoint& point : points)
+    errors_m.push_back(static_cast<float>(truth.error_m(point.stamp_ns).value_or(std::nan(""))));
+  sent.values += count;
+  return binary_frame(page::trajectory_values(robot.index(), static_cast<std::uint32_t>(start),
+                                              trajectory.front().stamp_ns, points, errors_m));
 }
 
 std::optional<Frame> PageSession::next_truth(const RobotMirror& robot, Sent& sent) const {

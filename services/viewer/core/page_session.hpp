@@ -51,8 +51,8 @@ class PageSession : public Session {
   /// What the page has of one robot.
   struct Sent {
     std::uint64_t epoch = 0, poses = 0, points = 0, edges = 0, loops = 0;
-    std::size_t trajectory = 0, truth = 0;
-    std::uint64_t truth_revision = 0, plan = 0;
+    std::size_t trajectory = 0, truth = 0, values = 0;
+    std::uint64_t truth_revision = 0, values_revision = 0, plan = 0;
     struct Cloud {
       std::uint64_t revision = 0;
       std::size_t points = 0;
@@ -72,6 +72,7 @@ class PageSession : public Session {
   std::optional<Frame> next_edges(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_points(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_trajectory(const RobotMirror& robot, Sent& sent) const;
+  std::optional<Frame> next_values(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_truth(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_view(const RobotMirror& robot, Sent& sent, std::int64_t now_ns);
   static void choose_parts(const View& view, const PageOptions& wanted, Sent& sent);

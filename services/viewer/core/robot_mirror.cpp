@@ -94,6 +94,7 @@ void TruthTrack::pair() {
     if (truth == waiting_truth_.end()) return false;
     paired_truth_m_.push_back(truth->position_m);
     paired_estimate_m_.push_back(estimate.position_m);
+    paired_stamps_ns_.push_back(estimate.stamp_ns);
     waiting_truth_.erase(truth);
     return true;
   });
@@ -121,6 +122,13 @@ void TruthTrack::align() {
   ate_m_ = std::sqrt(((aligned * truth) - estimate).colwise().squaredNorm().mean());
 }
 
+std::optional<double> TruthTrack::error_m(std::int64_t stamp_ns) const {
+  const auto found = std::ranges::lower_bound(paired_stamps_ns_, stamp_ns);
+  if (revision_ == 0 || found == paired_stamps_ns_.end() || *found != stamp_ns) return std::nullopt;
+  const auto place = static_cast<std::size_t>(found - paired_stamps_ns_.begin());
+  return (T_map_truth_ * paired_truth_m_[place] - paired_estimate_m_[place]).norm();
+}
+
 std::size_t View::bytes() const {
   std::size_t bytes = 0;
   for (const Payload& part : {image, features, mask, boxes, people}) bytes += part ? part->size() : 0;
@@ -130,7 +138,7 @@ std::size_t View::bytes() const {
 void RobotMirror::add(const msg::TrackingResult& result, double finished_ms) {
   if (msg::is_measured(result.state)) {
     const Eigen::Vector3d position(result.T_world_camera.translation_m.data());
-    map_.add_position(result.map_id, position);
+    map_.add_position(result);
     if (result.map_id == 0) truth_.add_estimate(result.stamp_ns, position);
   }
   set_payload(Item::kTracking, page::tracking(index_, result, finished_ms, filter_stage_ms_));

@@ -36,6 +36,8 @@ class TruthTrack {
   /// Frames with both, and the absolute trajectory error (root mean square) over them; 0 before there are ten.
   std::size_t pairs() const { return paired_truth_m_.size(); }
   double ate_m() const { return ate_m_; }
+  /// Distance of the pose with that stamp from the truth; empty: not known, or not aligned yet.
+  std::optional<double> error_m(std::int64_t stamp_ns) const;
   /// Aligns again when the number of pairs has grown by a tenth, or by 30.
   void align_if_grown();
 
@@ -50,6 +52,7 @@ class TruthTrack {
   std::vector<Eigen::Vector3d> truth_m_;
   std::deque<Stamped> waiting_truth_, waiting_estimates_;
   std::vector<Eigen::Vector3d> paired_truth_m_, paired_estimate_m_;
+  std::vector<std::int64_t> paired_stamps_ns_;
   Eigen::Isometry3d T_map_truth_ = Eigen::Isometry3d::Identity();
   std::size_t aligned_pairs_ = 0;
   double ate_m_ = 0;

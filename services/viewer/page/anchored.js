@@ -60,10 +60,12 @@ const kLineVertex = `
   ${kLookUp}
   uniform float scale;
   uniform vec3 plainColor;
+  attribute vec3 own;
+  uniform bool colored;
   varying vec3 tint;
   void main() {
     vec3 p_world = texel(${kTexelsPerSlot}.0 * slot).xyz + rotate(texel(${kTexelsPerSlot}.0 * slot + 1.0), position * scale);
-    tint = plainColor;
+    tint = colored ? own : plainColor;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(p_world, 1.0);
   }
 `;
@@ -109,10 +111,11 @@ export function pointMaterial(poseTexture, look, heightRange) {
   });
 }
 
-/** Lines whose vertices are positions in the frames of their keyframes. color: a uniform, {value: THREE.Color}. */
-export function lineMaterial(poseTexture, color, opacity = 1, scale = { value: 1 }) {
+/** Lines whose vertices are positions in the frames of their keyframes. color: a uniform, {value: THREE.Color}; colored: a
+    uniform, {value: whether the vertices have colours of their own}. */
+export function lineMaterial(poseTexture, color, { opacity = 1, scale = { value: 1 }, colored = { value: false } } = {}) {
   return new THREE.ShaderMaterial({
-    uniforms: { ...poseTexture.uniforms, plainColor: color, opacity: { value: opacity }, scale },
+    uniforms: { ...poseTexture.uniforms, plainColor: color, opacity: { value: opacity }, scale, colored },
     vertexShader: kLineVertex, fragmentShader: kFragment, transparent: opacity < 1, depthWrite: opacity === 1,
   });
 }

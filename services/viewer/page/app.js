@@ -8,8 +8,12 @@ import { Connection, liveAddress } from "./connection.js";
 import { Controls } from "./controls.js";
 import { decode } from "./decode.js";
 import { byId, setText } from "./dom.js";
+import { EventsPanel } from "./events_panel.js";
+import { FleetPanel } from "./fleet_panel.js";
 import { Header } from "./header.js";
+import { HistoryBar } from "./history_bar.js";
 import { ImagePanel } from "./image_panel.js";
+import { InspectCard } from "./inspect_card.js";
 import { LayersPanel } from "./layers_panel.js";
 import { PanelFrame } from "./panel_frame.js";
 import { Plots } from "./plots.js";
@@ -20,6 +24,8 @@ import { Settings } from "./settings.js";
 import { bindShortcuts } from "./shortcuts.js";
 import { SystemPanel } from "./system_panel.js";
 import { exposeHooks } from "./hooks.js";
+import { ShareDialog } from "./share_dialog.js";
+import { parseHash } from "./share.js";
 import { hasEnded, situation } from "./waiting.js";
 
 const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
@@ -33,12 +39,20 @@ class App {
     this.undecoded = { count: 0, reason: "" };
     this.calls = new Calls((message) => this.connection.send(message));
     this.header = new Header((index) => this.select(index));
-    this.image = new ImagePanel(this.settings, () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0));
+    this.image = new ImagePanel(this.settings, (bitmap) => this.scene?.setCameraImage(bitmap), () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0));
     this.plots = new Plots();
     this.system = new SystemPanel();
+    this.fleet = new FleetPanel((index) => this.select(index));
+    this.historyBar = new HistoryBar((moment) => this.showMoment(moment));
+    this.inspect = new InspectCard(this);
+    this.events = new EventsPanel((event) => this.goTo(event));
     this.controls = new Controls(this.calls);
     this.replay = new ReplayBar(this.calls);
     this.layers = new LayersPanel(this.settings, () => this.settingsChanged());
+    this.share = new ShareDialog(this);
+    this.asked = parseHash(location.hash);   // by the link that opened the page
+    if (this.asked.layers) for (const name of Object.keys(this.settings.layers)) this.settings.layers[name] = this.asked.layers.includes(name);
+    this.chosen = this.asked.robot;
     this.frame = new PanelFrame(this.settings, () => this.settingsChanged());
     this.connection = new Connection(liveAddress(location), {
       open: () => this.forget(), close: () => this.calls.abandon(), text: (message) => this.receiveText(message),
@@ -66,6 +80,11 @@ class App {
       byId("no-scene").hidden = true;
       this.scene = new Scene(byId("map"), this.settings, (tracking) => this.measureAge(tracking));
       this.frame.bindView(this.scene);
+      this.inspect.bind(this.scene);
+      if (this.asked.view) {
+        this.frame.setMode(this.asked.view.mode);
+        this.scene.setView(this.asked.view);
+      }
       this.showRobots();
     } catch (error) {
       byId("no-scene").hidden = false;
@@ -164,12 +183,31 @@ class App {
     byId("retry").hidden = connection.state !== "closed";
     if (this.frame.shows("plots")) this.plots.update(robot, now_s);
     if (this.frame.shows("system")) this.system.update(session, robot, connection, now_s);
+    this.fleet.update(session, this.selected, { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s }, now_ms);
+    this.historyBar.update(robot);
+    if (this.frame.shows("events")) this.events.update(robot);
     this.controls.update(robot, allowed);
     this.replay.update(robot, allowed);
-    this.layers.update(session);
+    if (this.asked.at_s !== undefined && this.replay.seekable) {
+      this.replay.seek(this.asked.at_s);
+      this.asked.at_s = undefined;
+    }
+    this.layers.update(session, robot);
     if (!robot?.image) this.image.update(robot, robot !== undefined && hasEnded(robot));
     const { count, reason } = this.undecoded;
     setText(byId("undecoded"), count > 0 ? `${count} ${count === 1 ? "message" : "messages"} could not be read: ${reason}` : "");
+  }
+
+  /** event: of the log of the selected robot. */
+  goTo({ position_s, pose, map }) {
+    if (position_s !== undefined && this.replay.seekable) this.replay.seek(position_s);
+    else if (pose) this.scene?.lookAt(this.selected, map, pose);
+  }
+
+  /** A moment of the history, or null: what is now. */
+  showMoment(moment) {
+    this.image.freeze(moment);
+    this.scene?.showMoment(this.selected, moment);
   }
 
   settingsChanged() {
@@ -200,7 +238,7 @@ class App {
       coloring: () => this.layers.nextColoring(), pause: () => this.replay.togglePause(), step: () => this.replay.step(),
       save: () => this.controls.press("/slam/save_map"), reset: () => this.controls.press("/slam/reset"),
       robot: () => this.nextRobot(), large: () => this.frame.toggleLarge(), theme: () => this.frame.nextTheme(),
-      help: () => byId("help").showModal(),
+      help: () => byId("help").showModal(), share: () => this.share.open(),
     };
   }
 

@@ -61,6 +61,12 @@ export class CameraModes {
     this.#place(eye, target);
   }
 
+  /** From a place at another, as the user would. */
+  look(eye, target) {
+    this.automatic = false;
+    this.#place(new THREE.Vector3(...eye), new THREE.Vector3(...target));
+  }
+
   /** By keyboard: right and up as shares of the view, factor of the distance. */
   nudge(right, up, factor) {
     this.automatic = false;

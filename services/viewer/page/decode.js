@@ -116,6 +116,14 @@ function densePoints(reader, count) {
   return { start, total, positions, colors };
 }
 
+/** Of entries start..: state (its number), s since the first entry, m, m (NaN: unknown). */
+function trajectoryValues(reader, count) {
+  const start = reader.u32(), from = reader.take(16 * count), column = (offset) =>
+    Float32Array.from({ length: count }, (_, i) => reader.view.getFloat32(from + 16 * i + offset, true));
+  const states = Uint8Array.from({ length: count }, (_, i) => reader.view.getUint32(from + 16 * i, true));
+  return { start, states, times_s: column(4), sigmas_m: column(8), errors_m: column(12) };
+}
+
 /** t, q: of the corner of the first cell; its axes x and y lie in the plan. */
 function floorPlan(reader, count) {
   const cell_m = reader.f32(), width = reader.u16(), height = reader.u16();
@@ -137,6 +145,7 @@ const kBodies = {
   13: ["people", maskRuns],
   14: ["moving", densePoints],
   15: ["plan", floorPlan],
+  16: ["trajectory_values", trajectoryValues],
 };
 
 /** The message as {type, robot, map, ...}; null for a kind that a newer server may send. */

@@ -19,9 +19,10 @@ const kFeatureRadius_px = 1.7;   // on the screen
 const kFont_px = 12;
 
 export class ImagePanel {
-  /** pause_ms(): least time between two images. */
-  constructor(settings, pause_ms = () => 0) {
+  /** onDrawn(bitmap): an image is shown; pause_ms(): least time between two images. */
+  constructor(settings, onDrawn = () => {}, pause_ms = () => 0) {
     this.settings = settings;
+    this.onDrawn = onDrawn;
     this.pause_ms = pause_ms;
     this.canvas = byId("image");
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
@@ -46,6 +47,16 @@ export class ImagePanel {
     else show();
   }
 
+  /** Shows a moment of the history, without overlays; null: what comes. */
+  freeze(moment) {
+    this.frozen = moment;
+    this.update(this.robot);
+  }
+
+  get #image() {
+    return this.frozen ? this.frozen.image : this.robot?.image;
+  }
+
   #bindSwitch(name) {
     const box = byId(`overlay-${name}`);
     box.checked = this.settings.overlays[name];
@@ -57,7 +68,7 @@ export class ImagePanel {
   }
 
   #show() {
-    const image = this.robot?.image;
+    const image = this.#image;
     if (!image) {
       this.decoded = null;
       this.bitmap = null;
@@ -90,12 +101,12 @@ export class ImagePanel {
     }
     this.decoding = false;
     this.decoded = image;
-    if (this.robot?.image === image) this.#draw();
+    if (this.#image === image) this.#draw();
     else this.update(this.robot);
   }
 
   #draw() {
-    const image = this.robot?.image;
+    const image = this.#image;
     if (!image || !this.bitmap) return;
     this.#reveal();
     if (this.canvas.width !== image.width || this.canvas.height !== image.height) {
@@ -104,6 +115,8 @@ export class ImagePanel {
     }
     this.scale = image.width / (this.canvas.clientWidth || image.width);   // image pixels per pixel of the screen
     this.context.drawImage(this.bitmap, 0, 0, image.width, image.height);
+    this.onDrawn(this.bitmap);
+    if (this.frozen) return;
     const { overlays } = this.settings;
     if (overlays.people) this.#drawMask("people");
     if (overlays.mask) this.#drawMask("mask");

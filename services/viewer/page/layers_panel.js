@@ -3,8 +3,9 @@
 
 // What the map shows: kinds of things, colours of the points, robots and their maps.
 
-import { byId, el } from "./dom.js";
+import { byId, el, setText } from "./dom.js";
 import { count } from "./format.js";
+import { kPathColorings, pathLegend } from "./path_colors.js";
 import { scenePalette } from "./palette.js";
 import { kLayers } from "./settings.js";
 
@@ -21,6 +22,13 @@ export class LayersPanel {
     select.append(...kColorings.map((name) => el("option", { value: name }, name)));
     select.value = settings.coloring;
     select.addEventListener("change", () => this.#color(select.value));
+    const path = byId("path-coloring");
+    path.append(...kPathColorings.map((name) => el("option", { value: name }, name)));
+    path.value = settings.pathColoring;
+    path.addEventListener("change", () => {
+      settings.pathColoring = path.value;
+      this.#changed();
+    });
     this.shown = "";
     this.applyTheme();
   }
@@ -39,7 +47,9 @@ export class LayersPanel {
   }
 
   /** The list of robots and maps, if there is more than one map in all. */
-  update(session) {
+  update(session, robot) {
+    const map = robot?.maps.get(robot.tracking?.map ?? 0);
+    setText(byId("path-legend"), map ? pathLegend(map, this.settings.pathColoring) : "");
     const rows = session.byName.flatMap((robot) => [...robot.maps.values()].map((map) => ({ robot, map })));
     byId("maps-row").hidden = rows.length < 2;
     const key = JSON.stringify(rows.map(({ robot, map }) => [robot.index, robot.name, map.id, map.posedCount]));

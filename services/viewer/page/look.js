@@ -17,6 +17,10 @@ export class Look {
     this.covisibility = color();
     this.loop = color();
     this.trajectory = color();
+    this.markMaterial = new THREE.LineBasicMaterial({ color: "#ffffff", depthTest: false });
+    this.markPointMaterial = new THREE.PointsMaterial({ color: "#ffffff", size: 12, sizeAttenuation: false, depthTest: false });
+    this.pathColored = { value: false };
+    this.pathColoring = "one colour";
     this.share = 1;   // of the points, see detail.js
     this.textScale = 1;
     this.unitsPerPixel = 0.003;   // of a sprite that is as large at any distance
@@ -30,8 +34,8 @@ export class Look {
     this.movingMaterial = new THREE.PointsMaterial({ size: 2, sizeAttenuation: false, transparent: true, opacity: 0.35 });
   }
 
-  /** settings: {theme: light | dark, large, coloring}. view: {pixelRatio, height_px, fov_deg} of the canvas. */
-  apply({ theme, large, coloring }, { pixelRatio, height_px, fov_deg }) {
+  /** settings: {theme: light | dark, large, coloring, pathColoring}. view: {pixelRatio, height_px, fov_deg} of the canvas. */
+  apply({ theme, large, coloring, pathColoring }, { pixelRatio, height_px, fov_deg }) {
     const palette = scenePalette(theme);
     this.background.set(palette.background);
     this.grid.set(palette.grid);
@@ -43,7 +47,10 @@ export class Look {
     this.cameraMaterial.color.set(palette.camera);
     this.lostMaterial.color.set(palette.cameraLost);
     this.moverMaterial.color.set(palette.moving);
+    for (const material of [this.markMaterial, this.markPointMaterial]) material.color.set(palette.trajectory);
     this.points.coloring.value = kColorings[coloring] ?? 0;
+    this.pathColoring = pathColoring;
+    this.pathColored.value = pathColoring !== "one colour";
     this.points.size.value = (large ? 3.5 : 2) * pixelRatio;
     this.denseMaterial.size = this.movingMaterial.size = this.points.size.value;
     this.movingMaterial.color.set(palette.points);

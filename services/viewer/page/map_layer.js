@@ -7,6 +7,7 @@ import * as THREE from "/three/build/three.module.js";
 import { lineMaterial, pointMaterial, PoseTexture } from "./anchored.js";
 import { keyframeExtent_m, mapBounds } from "./geometry.js";
 import { drawOrder, PointPool } from "./point_pool.js";
+import { pathColor } from "./path_colors.js";
 import { planMesh } from "./plan_mesh.js";
 import { edgeSlots, frustumLines, slotsApart, trajectoryVertices } from "./map_lines.js";
 
@@ -32,10 +33,10 @@ export class MapLayer {
     this.pool = new PointPool();
     this.chunks = [];
     this.pointMaterial = pointMaterial(this.poses, look.points, this.heightRange);
-    this.frustums = this.#anchored(THREE.LineSegments, "keyframes", lineMaterial(this.poses, look.keyframe, 1, this.frustumScale));
-    this.covisibility = this.#anchored(THREE.LineSegments, "edges", lineMaterial(this.poses, look.covisibility, 0.5));
+    this.frustums = this.#anchored(THREE.LineSegments, "keyframes", lineMaterial(this.poses, look.keyframe, { scale: this.frustumScale }));
+    this.covisibility = this.#anchored(THREE.LineSegments, "edges", lineMaterial(this.poses, look.covisibility, { opacity: 0.5 }));
     this.loops = this.#anchored(THREE.LineSegments, "edges", lineMaterial(this.poses, look.loop));
-    this.trajectory = this.#anchored(THREE.LineSegments, "trajectory", lineMaterial(this.poses, look.trajectory));
+    this.trajectory = this.#anchored(THREE.LineSegments, "trajectory", lineMaterial(this.poses, look.trajectory, { colored: look.pathColored }));
     this.truth = this.#add(new THREE.Line(new THREE.BufferGeometry(), look.truthMaterial), "truth");
     this.dense = this.#add(new THREE.Group(), "dense");
     this.moving = this.#add(new THREE.Group(), "moving");
@@ -75,6 +76,7 @@ export class MapLayer {
   /** visible: {points: true, ...} */
   show(visible) {
     this.visible = visible;
+    this.pending.trajectory = true;   // its colouring may be another one
     for (const [name, objects] of Object.entries(this.shown)) {
       for (const object of objects) object.visible = visible[name];
     }
@@ -169,9 +171,10 @@ export class MapLayer {
   }
 
   #updateTrajectory() {
-    const { positions, slots, gaps } = trajectoryVertices(this.map);
+    const { positions, slots, colors, gaps } = trajectoryVertices(this.map, pathColor(this.map, this.look.pathColoring));
     this.trajectoryGaps = gaps;
     this.#setLines(this.trajectory, { positions, slots });
+    this.trajectory.geometry.setAttribute("own", new THREE.BufferAttribute(colors, 3));
   }
 
   #setLines(object, { positions, slots }) {

@@ -63,15 +63,16 @@ function thin(pairs) {
   return Float32Array.from(stride > 1 ? pairs.filter((_, i) => (i >> 1) % stride === 0) : pairs);
 }
 
-/** Segments between the entries whose keyframes have poses; gaps: some have none yet. */
-export function trajectoryVertices(map) {
+/** Segments between the entries whose keyframes have poses; gaps: some have none yet. colorOf(entry): r, g, b in 0..1. */
+export function trajectoryVertices(map, colorOf = () => [1, 1, 1]) {
   const { keyframes, positions, length } = map.trajectory;
   const stride = Math.max(1, Math.ceil(length / kMaxSteps));
-  const out = { positions: new Float32Array(6 * length), slots: new Float32Array(2 * length), gaps: false };
+  const out = { positions: new Float32Array(6 * length), slots: new Float32Array(2 * length), colors: new Float32Array(6 * length), gaps: false };
   let vertices = 0, before = -1;
   const add = (entry) => {
     out.slots[vertices] = map.posedSlot(keyframes[entry]);
     for (let k = 0; k < 3; ++k) out.positions[3 * vertices + k] = positions[3 * entry + k];
+    out.colors.set(colorOf(entry), 3 * vertices);
     vertices += 1;
   };
   for (let entry = 0; entry < length; entry += stride) {
@@ -85,5 +86,6 @@ export function trajectoryVertices(map) {
     }
     before = entry;
   }
-  return { positions: out.positions.slice(0, 3 * vertices), slots: out.slots.slice(0, vertices), gaps: out.gaps };
+  return { positions: out.positions.slice(0, 3 * vertices), slots: out.slots.slice(0, vertices),
+           colors: out.colors.slice(0, 3 * vertices), gaps: out.gaps };
 }

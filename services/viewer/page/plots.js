@@ -32,7 +32,7 @@ export class Plots {
     byId("plots-none").hidden = Boolean(robot?.tracking);
     byId("plots").hidden = !robot?.tracking;
     if (!robot?.tracking) return;
-    const { latency_ms, inliers, removedShare } = robot.history;
+    const { latency_ms, inliers, removedShare } = robot.series;
     const p50 = percentile(latency_ms.values, 0.5), p99 = percentile(latency_ms.values, 0.99);
     this.#write("latency", `p50 ${ms(p50)} · p99 ${ms(p99)}`);
     drawLine(this.parts.latency.canvas, latency_ms, now_s, { marks: [{ value: p50, color: kP50 }, { value: p99, color: kP99 }] });
@@ -40,7 +40,7 @@ export class Plots {
     drawLine(this.parts.inliers.canvas, inliers, now_s);
     this.#write("removed", `${removedShare.last.toFixed(0)} %`);
     drawLine(this.parts.removed.canvas, removedShare, now_s, { highest: 100 });
-    this.#updateStages(robot.history.stage_ms, now_s);
+    this.#updateStages(robot.series.stage_ms, now_s);
   }
 
   #updateStages(history, now_s) {

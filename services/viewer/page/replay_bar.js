@@ -35,6 +35,10 @@ export class ReplayBar {
     this.#show(playback);
   }
 
+  get seekable() {
+    return !byId("replay").hidden && !this.slider.disabled;
+  }
+
   togglePause() {
     const { playback } = this.robot ?? {};
     if (playback && !byId("pause").disabled) this.#call("/replay/pause", String(playback.state === "playing"));

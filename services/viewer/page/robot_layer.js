@@ -9,6 +9,8 @@ import { frustumLines } from "./map_lines.js";
 import { textSprite } from "./text_sprite.js";
 
 const kCameraDepth_m = 0.22;
+const kPictureSize = [1.6, 1.2];   // of the frustum's far side, at depth 1
+const kPicture_px = 256;
 const kVelocitySeconds = 1;     // an arrow shows the way of so long
 const kGap_m = 2;
 
@@ -97,6 +99,27 @@ export class RobotLayer {
     return this.camera.matrixWorld;
   }
 
+  /** The camera as it was at a moment of the history; null: as it is. */
+  showMoment(moment) {
+    this.moment = moment;
+  }
+
+  /** The camera's image, in its frustum. */
+  setImage(bitmap) {
+    if (!this.picture) {
+      const material = new THREE.MeshBasicMaterial({ map: new THREE.CanvasTexture(document.createElement("canvas")), side: THREE.DoubleSide });
+      this.picture = new THREE.Mesh(new THREE.PlaneBufferGeometry(...kPictureSize.map((size) => size * kCameraDepth_m)), material);
+      this.picture.position.z = kCameraDepth_m;
+      this.picture.rotation.x = Math.PI;   // the image's y is down
+      this.camera.add(this.picture);
+    }
+    const { map } = this.picture.material, { image: canvas } = map;
+    canvas.width = kPicture_px;
+    canvas.height = Math.round(kPicture_px * bitmap.height / bitmap.width);
+    canvas.getContext("2d").drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+    map.needsUpdate = true;
+  }
+
   show(visible) {
     this.visible = visible;
     this.drawnMovers = null;   // colours and sizes may be others
@@ -136,7 +159,7 @@ export class RobotLayer {
   }
 
   #updateCamera() {
-    const { tracking } = this.robot;
+    const tracking = this.moment ?? this.robot.tracking;
     if (tracking === this.drawnTracking) return false;
     this.drawnTracking = tracking;
     if (!tracking) return true;

@@ -74,6 +74,77 @@ export class Scene {
     this.request();
   }
 
+  /** From where it is seen: {mode, eye, target}, scene coordinates. */
+  view() {
+    const { mode, controls } = this.modes;
+    return { mode, eye: this.camera.position.toArray(), target: controls.target.toArray() };
+  }
+
+  /** As view() gave it. */
+  setView({ eye, target }) {
+    this.modes.look(eye, target);
+    this.request();
+  }
+
+  /** At a place in a map of a robot, from where the view is now. pose: begins with its position. */
+  lookAt(robot, map, [x, y, z]) {
+    const group = this.robots.get(robot)?.layers.get(map)?.group;
+    if (!group) return;
+    const target = group.localToWorld(new THREE.Vector3(x, y, z)), { controls } = this.modes;
+    const eye = this.camera.position.clone().sub(controls.target).add(target);
+    this.setView({ eye: eye.toArray(), target: target.toArray() });
+  }
+
+  /** Projects points of a robot's map: to {x, y (px of the canvas), depth}, or null behind the view. */
+  projector(robot, map) {
+    const group = this.robots.get(robot)?.layers.get(map)?.group, spot = new THREE.Vector3();
+    if (!group) return () => null;
+    this.camera.updateMatrixWorld();
+    group.updateWorldMatrix(true, false);
+    const matrix = this.camera.projectionMatrix.clone().multiply(this.camera.matrixWorldInverse.getInverse(this.camera.matrixWorld)).multiply(group.matrixWorld);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    return (point) => {
+      spot.set(...point).applyMatrix4(matrix);
+      return spot.z > 1 ? null : { x: (spot.x + 1) / 2 * width, y: (1 - spot.y) / 2 * height, depth: spot.z };
+    };
+  }
+
+  /** A sign at a point of a map, or a line between two; without arguments none. */
+  mark(robot, map, points = []) {
+    this.marked?.parent.remove(this.marked);
+    this.marked?.geometry.dispose();
+    this.marked = null;
+    const group = this.robots.get(robot)?.layers.get(map)?.group;
+    if (group && points.length > 0) {
+      const geometry = new THREE.BufferGeometry().setFromPoints(points.map((point) => new THREE.Vector3(...point)));
+      this.marked = points.length > 1 ? new THREE.Line(geometry, this.look.markMaterial) : new THREE.Points(geometry, this.look.markPointMaterial);
+      this.marked.renderOrder = 2;
+      group.add(this.marked);
+    }
+    this.forced = true;
+    this.request();
+  }
+
+  /** The camera where it was then; null: where it is. */
+  showMoment(robot, moment) {
+    this.robots.get(robot)?.showMoment(moment);
+    this.forced = true;
+    this.request();
+  }
+
+  /** bitmap: the newest image of the selected robot's camera. */
+  setCameraImage(bitmap) {
+    this.robots.get(this.selected)?.setImage(bitmap);
+    this.forced = true;
+    this.request();
+  }
+
+  /** Where the frame of a robot's map lies in the scene. */
+  originOf(robot, map) {
+    const layer = this.robots.get(robot), group = layer?.layers.get(map)?.group;
+    return group ? group.getWorldPosition(new THREE.Vector3()).toArray() : [0, 0, 0];
+  }
+
   fit() {
     this.modes.fit(this.bounds);
     this.request();

@@ -3,6 +3,8 @@
 
 // Everything the server has sent since the connection was opened. Pure data: messages in, state out; no DOM, no clock.
 
+import { EventLog } from "./event_log.js";
+import { History } from "./history.js";
 import { MapState } from "./world.js";
 import { Series } from "./series.js";
 
@@ -12,7 +14,7 @@ const kStageOrder = ["wait_detections", "extract", "masks", "ego_motion", "depth
 const kMapHandlers = {
   keyframe_poses: "setPoses", keyframes_removed: "remove", points: "setPoints", covisibility: "setCovisibility",
   loop_edges: "setLoops", trajectory: "setTrajectory", ground_truth: "setTruth", dense: "setDense",
-  moving: "setMoving", plan: "setPlan",
+  moving: "setMoving", plan: "setPlan", trajectory_values: "setTrajectoryValues",
 };
 
 export class RobotState {
@@ -27,9 +29,11 @@ export class RobotState {
     this.commands = [];
     this.playback = null;
     this.truthError = null;
+    this.events = new EventLog();
+    this.history = new History();
     this.image = null;
     this.overlays = { boxes: null, features: null, people: null, mask: null };
-    this.history = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
+    this.series = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
   }
 
   /** Whether the world of its maps has z up: that of a robot with a base. */
@@ -62,7 +66,13 @@ export class RobotState {
     return [...this.maps.values()].reduce((sum, map) => sum + map[name], 0);
   }
 
+  setServices(services) {
+    this.services = services;
+    this.events.services(services, this.tracking, this.playback);
+  }
+
   forgetMaps() {
+    this.events.map("the map begins again", this.tracking, this.playback);
     this.maps.clear();
     this.movers = [];
   }
@@ -70,11 +80,13 @@ export class RobotState {
   setTracking(message, now_ms) {
     this.tracking = message;
     this.trackingAt_ms = now_ms;
+    this.events.tracking(message, this.playback);
+    if (!this.playback) this.history.add(message, this.image);
     const seen = (message.static ?? 0) + (message.removed ?? 0), at_s = now_ms / 1000;
-    this.history.latency_ms.push(at_s, message.latency_ms);
-    this.history.inliers.push(at_s, message.inliers);
-    this.history.removedShare.push(at_s, seen > 0 ? 100 * message.removed / seen : 0);
-    this.history.stage_ms.push(at_s, stages(message));
+    this.series.latency_ms.push(at_s, message.latency_ms);
+    this.series.inliers.push(at_s, message.inliers);
+    this.series.removedShare.push(at_s, seen > 0 ? 100 * message.removed / seen : 0);
+    this.series.stage_ms.push(at_s, stages(message));
   }
 }
 
@@ -131,7 +143,7 @@ export class Session {
       case "robots": this.#setRobots(message.robots); break;
       case "map_reset": robot().forgetMaps(); this.generation += 1; break;
       case "tracking": robot().setTracking(message, now_ms); break;
-      case "status": robot().services = message.services; break;
+      case "status": robot().setServices(message.services); break;
       case "boxes": robot().overlays.boxes = message; break;
       case "movers": robot().movers = message.movers; break;
       case "commands": robot().commands = message.commands; break;
@@ -149,7 +161,9 @@ export class Session {
       robot.overlays[message.type] = message;
     } else {
       if (!robot.maps.has(message.map)) this.generation += 1;
-      robot.map(message.map)[kMapHandlers[message.type]](message);
+      const map = robot.map(message.map), loops = map.loops.length;
+      map[kMapHandlers[message.type]](message);
+      if (map.loops.length > loops) robot.events.map("loop closed", robot.tracking, robot.playback);
     }
   }
 

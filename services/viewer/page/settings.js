@@ -11,7 +11,7 @@ export const kLayers = {
 };
 
 const kDefaults = {
-  themeChoice: "auto", large: false, coloring: "height",
+  themeChoice: "auto", large: false, coloring: "height", pathColoring: "one colour",
   layers: { dense: true, moving: false, plan: false, points: true, keyframes: true, edges: false, trajectory: true, movers: true,
             truth: true, grid: true },
   overlays: { features: true, boxes: true, people: true, mask: true },
@@ -33,9 +33,9 @@ export class Settings {
   }
 
   save() {
-    const { themeChoice, large, coloring, layers, overlays, closedPanels, tab } = this;
+    const { themeChoice, large, coloring, pathColoring, layers, overlays, closedPanels, tab } = this;
     try {
-      localStorage.setItem(kKey, JSON.stringify({ themeChoice, large, coloring, layers, overlays, closedPanels, tab }));
+      localStorage.setItem(kKey, JSON.stringify({ themeChoice, large, coloring, pathColoring, layers, overlays, closedPanels, tab }));
     } catch {
       // Private windows keep nothing; the choice then lasts as long as the page.
     }

@@ -36,6 +36,7 @@ const kKeys = [
   [["s"], "save", "Save the map"],
   [["r"], "reset", "Reset the map (asks first)"],
   [["n"], "robot", "Next robot"],
+  [["h"], "share", "Share what is shown: a link, a file"],
   [["l"], "large", "Large text, for a projector"],
   [["t"], "theme", "Theme: as the system, light, dark"],
   [["?"], "help", "This list"],

@@ -3,6 +3,7 @@
 
 // One sentence about where things stand, and one about what to do: the page is never blank without saying why.
 
+import { reasons } from "./doubt.js";
 import { vendorName } from "./format.js";
 
 const kStale_ms = 3000;
@@ -63,7 +64,7 @@ function ofTracking(robot, now_ms) {
   const age_ms = now_ms - robot.trackingAt_ms;
   if (age_ms > kStale_ms) return withoutPoses(robot, age_ms);
   const [level, title, detail] = kStates[robot.tracking.state] ?? ["warn", `State: ${robot.tracking.state}`, ""];
-  return report(level, title, detail);
+  return report(level, title, [detail, ...reasons(robot)].join(" ").trim());
 }
 
 /** Whether its camera or recording has come to its end. */

@@ -15,6 +15,7 @@ export class MapState {
     this.slots = 0;
     this.loops = new Uint32Array(0);
     this.trajectory = { keyframes: [], positions: [], length: 0 };
+    this.values = { states: [], times_s: [], sigmas_m: [], errors_m: [] };   // of its entries, as far as they came
     this.truth = [];
     this.dense = { parts: [] };      // [{start, positions, colors}]; the first points are spread over all
     this.moving = { parts: [] };
@@ -100,6 +101,13 @@ export class MapState {
       for (let k = 0; k < 3; ++k) own.positions[3 * (start + i) + k] = positions[3 * i + k];
     }
     own.length = start === 0 ? keyframes.length : Math.max(own.length, start + keyframes.length);
+    this.changes.trajectoryFrom = Math.min(this.changes.trajectoryFrom, start);
+  }
+
+  setTrajectoryValues({ start, ...columns }) {
+    for (const [name, values] of Object.entries(this.values)) {
+      for (let i = 0; i < columns.states.length; ++i) values[start + i] = columns[name][i];
+    }
     this.changes.trajectoryFrom = Math.min(this.changes.trajectoryFrom, start);
   }
 

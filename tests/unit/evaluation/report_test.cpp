@@ -308,6 +308,7 @@ TEST_F(Report, files_are_written_and_parse) {
   EXPECT_EQ(summary.frames.with_pose, 94U);
   EXPECT_EQ(nlohmann::json::parse(read_text(folder_.file("report.json")))["frames_in"], 100);
   EXPECT_THAT(read_text(folder_.file("report.html")), testing::EndsWith("</html>\n"));
+  EXPECT_THAT(read_text(folder_.file("map.html")), HasSubstr("Path of the camera"));
 }
 
 TEST_F(Report, folder_that_does_not_exist_is_named) {

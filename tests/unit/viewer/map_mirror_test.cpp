@@ -71,10 +71,19 @@ TEST(MapMirror, a_removed_keyframe_loses_its_points) {
   EXPECT_EQ(mirror.keyframes().size(), 1U);
 }
 
+msg::TrackingResult result(std::uint32_t map_id, const Eigen::Vector3d& position_m) {
+  msg::TrackingResult result{};
+  result.map_id = map_id;
+  result.state = msg::TrackingState::kOk;
+  Eigen::Map<Eigen::Vector3d>(result.T_world_camera.translation_m.data()) = position_m;
+  result.covariance[7] = 0.04;
+  return result;
+}
+
 TEST(MapMirror, another_session_forgets_everything) {
   MapMirror mirror;
   mirror.add(update({keyframe(1, 0)}));
-  mirror.add_position(0, {0, 0, 0});
+  mirror.add_position(result(0, {0, 0, 0}));
   const std::uint64_t epoch = mirror.epoch();
   mirror.add(update({keyframe(2, 0)}, 2));
   EXPECT_NE(mirror.epoch(), epoch);
@@ -94,14 +103,15 @@ TEST(MapMirror, a_restarted_slam_counts_its_events_from_zero) {
 
 TEST(MapMirror, the_trajectory_moves_with_its_keyframes) {
   MapMirror mirror;
-  mirror.add_position(0, {5, 0, 0});
+  mirror.add_position(result(0, {5, 0, 0}));
   mirror.add(update({keyframe(1, 1)}));
-  mirror.add_position(0, {1.5, 0, 0});
-  mirror.add_position(3, {9, 9, 9});
+  mirror.add_position(result(0, {1.5, 0, 0}));
+  mirror.add_position(result(3, {9, 9, 9}));
   ASSERT_EQ(mirror.trajectory().size(), 2U);
   EXPECT_EQ(mirror.trajectory()[0].keyframe, TrajectoryPoint::kNone);
   EXPECT_EQ(mirror.trajectory()[1].keyframe, 1U);
   EXPECT_NEAR(mirror.trajectory()[1].position_m.x(), 0.5, 1e-6);
+  EXPECT_NEAR(mirror.trajectory()[1].sigma_m, 0.2, 1e-6);
 }
 
 TEST(MapMirror, values_that_are_not_finite_are_left_out) {
@@ -129,6 +139,8 @@ TEST(TruthTrack, is_aligned_to_the_estimate_and_gives_its_error) {
   EXPECT_NEAR(track.ate_m(), 0.01, 0.001);
   EXPECT_LT((track.aligned(3) - T_map_truth * track.positions_m()[3]).norm(), 0.005);
   EXPECT_EQ(track.revision(), 1U);
+  EXPECT_NEAR(track.error_m(7).value_or(0), 0.01, 0.005);
+  EXPECT_FALSE(track.error_m(1000).has_value()) << "no pose";
   track.align_if_grown();
   EXPECT_EQ(track.revision(), 1U);
 }
@@ -141,7 +153,7 @@ TEST(MapMirror, what_does_not_fit_is_left_out_and_counted) {
   EXPECT_EQ(mirror.keyframes().size(), 2U);
   EXPECT_EQ(mirror.point_count(), 3U);
   EXPECT_THAT(mirror.keyframe(1).covisible, ElementsAre(5U, 6U));
-  for (int i = 0; i < 2; ++i) mirror.add_position(0, {1, 2, 3});
+  for (int i = 0; i < 2; ++i) mirror.add_position(result(0, {1, 2, 3}));
   EXPECT_EQ(mirror.trajectory().size(), 1U);
   EXPECT_EQ(mirror.left_out(), 4U) << "a keyframe, a point, an edge, a position";
   msg::MapKeyframe gone = keyframe(1, 0, msg::kMapRemoved);

@@ -60,7 +60,7 @@ std::string image_messages() {
   const std::array<std::byte, 9> points{};
   return fmt::format("image {}\nfeatures {}\nmask {}\ndense {}\n", hex(page::image(1, sample<msg::CompressedImage>(3))),
                      hex(page::features(1, features())), hex(page::mask(1, mask())),
-                     hex(page::dense(1, 0, 1, {1, 2, 3}, 0.5F, points)));
+                     hex(page::dense(page::Kind::kDense, 1, 0, 1, {1, 2, 3}, 0.5F, points)));
 }
 
 std::string texts() {

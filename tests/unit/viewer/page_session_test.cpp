@@ -38,6 +38,12 @@ msg::MapUpdate map_of(std::uint32_t keyframes, std::size_t points_each, double x
   return update;
 }
 
+msg::TrackingResult result_at(double x) {
+  msg::TrackingResult result{};
+  result.T_world_camera.translation_m = {x, 0, 0};
+  return result;
+}
+
 class PageSessionTest : public ::testing::Test {
  protected:
   /// Everything that is sent at one moment, in bytes by kind.
@@ -81,7 +87,7 @@ TEST_F(PageSessionTest, a_page_without_the_token_sees_everything_and_calls_nothi
 TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
   RobotMirror& robot = *hub.robot("");
   robot.map().add(map_of(50, 100));
-  for (int i = 0; i < 1000; ++i) robot.map().add_position(0, {0.01 * i, 0, 0});
+  for (int i = 0; i < 1000; ++i) robot.map().add_position(result_at(0.01 * i));
   const auto page = hub.open();
   const auto first = take(*page, kSecond);
   for (const char* part : {"hello", "robots", "binary 1", "binary 3", "binary 4", "binary 6"})

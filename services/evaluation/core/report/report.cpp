@@ -13,6 +13,7 @@
 #include "common/io/atomic_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
+#include "services/evaluation/core/report/map_page_of_run.hpp"
 #include "services/evaluation/core/report/map_picture.hpp"
 
 namespace rtd::eval {
@@ -213,7 +214,7 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
   for (const run_record::HostClock& clock : run.clocks) text += row("clock", clock_text(clock));
   text += row("CPU time", usage_text(run));
   for (const std::string& note : summary.notes) text += row("note", note);
-  text += row("report", folder + "/report.html");
+  text += row("report", folder + "/report.html, map.html");
   return text;
 }
 
@@ -232,6 +233,7 @@ RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
   const std::string json = service::json_text(report_json(run, summary));
   write_file(folder / "report.json", json + "\n");
   write_file(folder / "report.html", report_html(run, summary));
+  write_file(folder / "map.html", map_page::html(map_page_of(run, summary)));
   return summary;
 }
 

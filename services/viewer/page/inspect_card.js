@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+
+// A click on the map asks what is there; with Shift, how far it is from what was asked before.
+
+import { byId, el, setText } from "./dom.js";
+import { length } from "./format.js";
+import { showMoment } from "./history_bar.js";
+import { apart_m, describe, nearest, things } from "./inspect.js";
+
+const kStill_px = 4;   // a pointer that moves further turns the view
+const kImages = 3;
+
+export class InspectCard {
+  constructor(app) {
+    this.app = app;
+    byId("inspect-close").addEventListener("click", () => this.close());
+  }
+
+  /** scene: its canvas takes the clicks. */
+  bind(scene) {
+    this.scene = scene;
+    const { canvas } = scene;
+    canvas.addEventListener("pointerdown", ({ clientX, clientY }) => { this.down = [clientX, clientY]; });
+    canvas.addEventListener("pointerup", (event) => {
+      const moved = this.down && Math.hypot(event.clientX - this.down[0], event.clientY - this.down[1]);
+      if (event.button === 0 && moved < kStill_px) this.ask(event.offsetX, event.offsetY, event.shiftKey);
+    });
+  }
+
+  /** x, y: px in the map. measure: from what was asked before. */
+  ask(x, y, measure) {
+    const { robot, settings } = this.app, map = robot?.maps.get(robot.tracking?.map ?? 0);
+    if (!map) return;
+    const project = this.scene.projector(robot.index, map.id);
+    const found = nearest(things(map, robot.movers, settings.layers), { x, y }, project);
+    if (!found) {
+      if (!measure) this.close();
+      return;
+    }
+    const from = measure ? this.asked : null;
+    this.asked = found;
+    this.scene.mark(robot.index, map.id, from ? [from.point, found.point] : [found.point]);
+    this.#show(found, from, robot, map);
+  }
+
+  close() {
+    byId("inspect").hidden = true;
+    this.asked = null;
+    this.scene?.mark();
+  }
+
+  #show(found, from, robot, map) {
+    const { title, rows } = describe(found, robot.tracking);
+    if (from) rows.unshift([`From ${describe(from, null).title}`, length(apart_m(from.point, found.point))]);
+    byId("inspect").hidden = false;
+    setText(byId("inspect-title"), title);
+    byId("inspect-rows").replaceChildren(...rows.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+    const moments = robot.history.towards(found.point, map.id, kImages);
+    byId("inspect-images").replaceChildren(...moments.map((moment) => {
+      const figure = el("figure", {});
+      showMoment(figure, moment);
+      return figure;
+    }));
+    setText(byId("inspect-note"), moments.length > 0 ? "Images of the last minutes that look towards it" : "Shift and a click on another thing measures between both.");
+  }
+}
