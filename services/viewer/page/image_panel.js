@@ -116,7 +116,10 @@ export class ImagePanel {
     this.scale = image.width / (this.canvas.clientWidth || image.width);   // image pixels per pixel of the screen
     this.context.drawImage(this.bitmap, 0, 0, image.width, image.height);
     this.onDrawn(this.bitmap);
-    if (this.frozen) return;
+    if (this.frozen) {
+      this.#describe();
+      return;
+    }
     const { overlays } = this.settings;
     if (overlays.people) this.#drawMask("people");
     if (overlays.mask) this.#drawMask("mask");
@@ -178,7 +181,7 @@ export class ImagePanel {
   }
 
   #describe() {
-    const features = this.robot?.overlay("features"), boxes = this.robot?.overlay("boxes");
+    const shown = this.frozen ? undefined : this.robot, features = shown?.overlay("features"), boxes = shown?.overlay("boxes");
     const removed = features ? features.removed.reduce((sum, flag) => sum + flag, 0) : NaN;
     setText(this.legend.kept, count(features ? features.count - removed : NaN));
     setText(this.legend.removed, count(removed));

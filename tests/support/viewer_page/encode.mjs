@@ -110,10 +110,26 @@ export const dynamicMask = (...mask) => maskRuns(11, ...mask);
 export const personMasks = (...labels) => maskRuns(13, ...labels);
 
 /** list: [[x, y, z, r, g, b]], m */
-export function densePoints(start, total, origin, scale_m, list, at) {
-  const out = new Writer(12, list.length, at).u32(start).u32(total).f32(...origin, scale_m);
+export const densePoints = (...cloud) => cloudPoints(12, ...cloud);
+export const movingPoints = (...cloud) => cloudPoints(14, ...cloud);
+
+function cloudPoints(kind, start, total, origin, scale_m, list, at) {
+  const out = new Writer(kind, list.length, at).u32(start).u32(total).f32(...origin, scale_m);
   for (const [x, y, z, r, g, b] of list) {
     out.i16((x - origin[0]) / scale_m).i16((y - origin[1]) / scale_m).i16((z - origin[2]) / scale_m).u8(r).u8(g).u8(b);
   }
+  return out.done();
+}
+
+/** cells: 0 free, 100 occupied, 255 unknown, row by row. */
+export function floorPlan(cell_m, width, height, t, q, cells, at) {
+  const runs = [...cells].flatMap((cell) => [cell, 0]);
+  return new Writer(15, runs.length, at).f32(cell_m).u16(width).u16(height).f32(...t, ...q).raw(Uint8Array.from(runs)).done();
+}
+
+/** values: [[state, t_s, sigma_m, error_m]] */
+export function trajectoryValues(start, values, at) {
+  const out = new Writer(16, values.length, at).u32(start);
+  for (const [state, ...numbers] of values) out.u32(state).f32(...numbers);
   return out.done();
 }

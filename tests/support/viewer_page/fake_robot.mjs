@@ -9,11 +9,12 @@ import { Room } from "./room.mjs";
 
 const kTurn_s = 40;                // one way round the room
 const kImageEvery = 3, kStatusEvery = 15, kMoversEvery = 2;   // ticks
-const kBlocksPerMessage = 400;
+const kBlocksPerMessage = 400, kCloudPart = 8192;
 const kModes = ["off", "semantic", "geometry", "rtd"];
 
 export class FakeRobot {
-  constructor(index, { keyframes = 60, points = 5000, replay = true, robots = 1, truth = true, state = "ok" } = {}) {
+  constructor(index, { keyframes = 60, points = 5000, replay = true, robots = 1, truth = true, state = "ok", dense = 20_000 } = {}) {
+    this.dense = dense;
     this.index = index;
     this.name = robots > 1 ? `robot_${index + 1}` : "";
     this.room = new Room({ keyframes, points, seed: 7 + index });
@@ -45,6 +46,8 @@ export class FakeRobot {
       messages.push(encode.covisibility(part.map(({ id }) => ({ keyframe: id, others: this.room.covisible(id) })), this.at));
     }
     messages.push(encode.trajectory(0, keyframes.map(({ id }) => ({ keyframe: id, p: [0, 0, 0] })), this.at));
+    messages.push(encode.trajectoryValues(0, keyframes.map((_, i) => [i % 9 === 0 ? 6 : 1, i, 0.002 * (i % 20), this.truth ? 0.001 * i : NaN]), this.at));
+    messages.push(...this.#clouds());
     messages.push(encode.loopEdges(this.room.closed ? this.#loops() : [], this.at));
     if (this.truth) messages.push(...this.#truth());
     return messages;
@@ -143,6 +146,21 @@ export class FakeRobot {
     }
     return done(name.startsWith("/replay") ? `at ${this.time_s.toFixed(1)} s` : `${name} ${argument}`.trim(),
                 name.startsWith("/replay") ? [this.playback()] : []);
+  }
+
+  /** What the room looks like, people in it, and its floor. */
+  #clouds() {
+    const { room, at, dense } = this, scale_m = 0.001, messages = [], origin = [0, 0, 0.62 * room.half_m];
+    for (let start = 0; start < dense; start += kCloudPart) {
+      const part = Array.from({ length: Math.min(kCloudPart, dense - start) }, () => room.coloredPoint());
+      messages.push(encode.densePoints(start, dense, origin, scale_m, part, at));
+    }
+    if (dense === 0) return messages;
+    const { center, size } = room.person(2), body = () => center.map((value, axis) => value + (room.random() - 0.5) * size[axis]);
+    messages.push(encode.movingPoints(0, 500, center, scale_m, Array.from({ length: 500 }, () => [...body(), 200, 180, 160]), at));
+    const cells = Array.from({ length: 40 * 40 }, (_, i) => (i % 40 < 2 ? 100 : i % 40 > 36 ? 255 : 0));
+    messages.push(encode.floorPlan(0.1, 40, 40, [-2, 1.3, 0], [Math.SQRT1_2, 0, 0, Math.SQRT1_2], cells, at));
+    return messages;
   }
 
   #loops() {

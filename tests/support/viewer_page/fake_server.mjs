@@ -14,6 +14,7 @@ import { parseArgs } from "node:util";
 import { FakeRobot } from "./fake_robot.mjs";
 
 const kPage = fileURLToPath(new URL("../../../services/viewer/page/", import.meta.url));
+const kMapPage = fileURLToPath(new URL("../../../common/map_page/map_page.html", import.meta.url));
 const kThree = "/usr/share/javascript/three/";
 const kTypes = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml" };
 const kTick_ms = 33;
@@ -34,7 +35,7 @@ export function requirePackage(name) {
 
 function answerHttp(request, response) {
   const path = normalize(new URL(request.url, "http://localhost").pathname);
-  const file = path.startsWith("/three/") ? join(kThree, path.slice("/three/".length)) : join(kPage, path === "/" ? "index.html" : path);
+  const file = path.startsWith("/three/") ? join(kThree, path.slice("/three/".length)) : path === "/map_page.html" ? kMapPage : join(kPage, path === "/" ? "index.html" : path);
   response.setHeader("content-type", kTypes[extname(file)] ?? "application/octet-stream");
   createReadStream(file).on("error", () => response.writeHead(404).end()).pipe(response);
 }

@@ -65,6 +65,13 @@ export class Room {
     return [1, 2, 3, 5].map((step) => id - step).filter((other) => other >= 0);
   }
 
+  /** A point of its surfaces with a colour: x, y, z, r, g, b. */
+  coloredPoint() {
+    const { t } = this.pose(this.random()), [x, y, z] = this.#surfacePoint(t), light = 0.75 + 0.25 * this.random();
+    const color = y > kFloor_m - 0.01 ? [150, 110, 75] : Math.hypot(x, z - 0.62 * this.half_m) < 1.5 ? [190, 70, 50] : [205, 200, 185];
+    return [x, y, z, ...color.map((value) => Math.round(light * value))];
+  }
+
   person(time_s) {
     const swing = Math.sin(0.5 * time_s), center = [1.6 * swing, kFloor_m - kPersonSize_m[1] / 2, 0.62 * this.half_m + 0.8];
     return { id: 3, label: "person", center, size: kPersonSize_m, velocity: [0.8 * Math.cos(0.5 * time_s), 0, 0], static_probability: 0.03 };

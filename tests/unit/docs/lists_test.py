@@ -186,6 +186,12 @@ class Lists(unittest.TestCase):
             self.assertIn(f"{model.name} ({model.licence}", setup)
             self.assertRegex(page, rf"(?m)^\| `{model.name}`.*\| `{model.file}`.*\|.*, {model.licence} \|$")
 
+    def test_layouts_of_other_viewers_show_topics_that_exist(self):
+        topics = {"/" + name for name in re.findall(r'"rt/([\w/]+)"', text_of("common/bus/topics.hpp"))}
+        shown = set(re.findall(r'"(/[\w/]+)', text_of("config/foxglove_layout.json")))
+        self.assertGreater(len(shown), 5)
+        self.assertEqual(shown - topics, set())
+
     def test_a_second_list_would_be_found(self):
         self.assertTrue(lists_modes('const kModes = ["off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"];'))
         self.assertTrue(lists_modes('help = "off, semantic, geometry, "\n    "epipolar, rtd-paper or rtd";'))

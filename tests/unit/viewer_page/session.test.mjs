@@ -52,7 +52,7 @@ test("map_reset forgets the maps and what moves in them, and nothing else", () =
 test("histories: removed share in percent, stages without the totals", () => {
   const session = new Session();
   session.applyText(tracking, 1000);
-  const { removedShare, stage_ms, latency_ms } = session.robots.get(0).history;
+  const { removedShare, stage_ms, latency_ms } = session.robots.get(0).series;
   assert.deepEqual([removedShare.last, latency_ms.last], [25, 20]);
   assert.deepEqual(stage_ms.last, { "filter ego motion": 2, "slam match": 1 });
 });
