@@ -34,8 +34,7 @@ std::size_t share(const Layer& layer, double scale) {
 /// The largest share of all points that fits; 1 when all do.
 double fitting_scale(const Page& page, std::size_t room) {
   std::size_t lines = 0, points = 0;
-  for (const Layer& layer : page.layers)
-    (layer.line ? lines : points) += bytes_of(layer, layer.points_m.size());
+  for (const Layer& layer : page.layers) (layer.line ? lines : points) += bytes_of(layer, layer.points_m.size());
   if (points == 0 || lines + points <= room) return 1;
   return static_cast<double>(room - std::min(room, lines)) / static_cast<double>(points);
 }
@@ -66,9 +65,12 @@ json to_json(const Layer& layer, std::size_t wanted) {
     for (int axis = 0; axis < 3; ++axis) steps.push_back(static_cast<std::int16_t>(std::lround(point[axis])));
     if (!layer.colors.empty()) colors.insert(colors.end(), layer.colors[place].begin(), layer.colors[place].end());
   }
-  json result = {{"name", layer.name},       {"shown", layer.shown},
-                 {"line", layer.line},       {"origin", {origin.x(), origin.y(), origin.z()}},
-                 {"scale", scale},           {"points", packed(steps)},
+  json result = {{"name", layer.name},
+                 {"shown", layer.shown},
+                 {"line", layer.line},
+                 {"origin", {origin.x(), origin.y(), origin.z()}},
+                 {"scale", scale},
+                 {"points", packed(steps)},
                  {"color", fmt::format("#{:02x}{:02x}{:02x}", layer.color[0], layer.color[1], layer.color[2])}};
   if (!layer.colors.empty()) result["colors"] = packed(colors);
   return result;

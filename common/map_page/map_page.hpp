@@ -18,9 +18,9 @@ using Color = std::array<std::uint8_t, 3>;  ///< red, green, blue
 struct Layer {
   std::string name;
   bool shown = true;
-  bool line = false;                       ///< connected in their order
-  std::vector<Eigen::Vector3f> points_m;   ///< in the map's frame; those that are not finite are left out
-  std::vector<Color> colors;               ///< one for each point; empty: all as `color`
+  bool line = false;                      ///< connected in their order
+  std::vector<Eigen::Vector3f> points_m;  ///< in the map's frame; those that are not finite are left out
+  std::vector<Color> colors;              ///< one for each point; empty: all as `color`
   Color color{};
 };
 

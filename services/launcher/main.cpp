@@ -129,9 +129,8 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
 /// by what the replay has to do for it. The viewer ends with the replay. Returns why it cannot be started, else "".
 std::string start_viewer(std::vector<std::string>& arguments) {
   const std::string flag = "--viewer";
-  const auto given = std::ranges::find_if(arguments, [&](const std::string& argument) {
-    return argument == flag || argument.starts_with(flag + '=');
-  });
+  const auto given = std::ranges::find_if(
+      arguments, [&](const std::string& argument) { return argument == flag || argument.starts_with(flag + '='); });
   if (given == arguments.end()) return "";
   const std::string words = given->size() > flag.size() ? given->substr(flag.size() + 1) : "";
   const std::optional<ViewerUse> use = parse_viewer_use(words);

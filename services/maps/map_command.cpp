@@ -181,7 +181,8 @@ int write_page(const MapRequest& request, const slam::MapContents& contents, con
                                       {"Keyframes", std::to_string(part.keyframes)},
                                       {"Landmarks", std::to_string(part.landmarks)}},
                             .layers = {std::move(landmarks), std::move(path)}};
-  if (!write_file(request.out, err, [&](std::ostream& file) { file << map_page::html(page); })) return service::kRunFailed;
+  if (!write_file(request.out, err, [&](std::ostream& file) { file << map_page::html(page); }))
+    return service::kRunFailed;
   out << fmt::format("{}: {} landmarks of map {}, to open in a browser\n", request.out, part.landmarks, part.id);
   return service::kOk;
 }

@@ -84,7 +84,8 @@ void ReplayService::add_options(CLI::App& app, std::vector<service::GivenOption>
   app.get_option("--clock")->expected(0, 1)->default_str("40");
   app.footer(
       "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
-      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser, waits for the first page and stays until Ctrl-C "
+      "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser, waits for the first page and stays "
+      "until Ctrl-C "
       "(--viewer=now, --viewer=exit, --set viewer.port=...).\nExit code: 0 "
       "done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
       "used, 3 the recording is damaged and only its readable part was played");
@@ -318,13 +319,12 @@ service::ExitCode ReplayService::play() {
                     .start_ns = start_ns_,
                     .end_ns = end_ns_,
                     .wanted = [wanted](const mcap::Channel& channel) { return wanted.contains(channel.id); }});
-  PlayerOptions options{
-      .rate = config_.rate,
-      .paused = config_.pause,
-      .loop = config_.loop,
-      .hold = config_.hold,
-      .start_ns = start_ns_,
-      .end_ns = end_ns_};
+  PlayerOptions options{.rate = config_.rate,
+                        .paused = config_.pause,
+                        .loop = config_.loop,
+                        .hold = config_.hold,
+                        .start_ns = start_ns_,
+                        .end_ns = end_ns_};
   options.pacer.window = window_;
   options.pacer.resend_after_ns = std::int64_t{config_.resend_after_ms} * 1'000'000;
   options.pacer.result_timeout_ns = to_ns(config_.result_timeout_s);

@@ -236,8 +236,8 @@ void StaticMap::fuse(const DepthView& view, const Eigen::Isometry3f& T_world_cam
 
 void StaticMap::keep_moving(const Eigen::Vector3f& p_world, const std::array<std::uint8_t, 3>& bgr, AnchorId anchor) {
   if (moving_.size() >= kMovingKept) moving_.pop_front();
-  moving_.push_back({{p_world, {static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2])}},
-                     anchor});
+  moving_.push_back(
+      {{p_world, {static_cast<float>(bgr[0]), static_cast<float>(bgr[1]), static_cast<float>(bgr[2])}}, anchor});
 }
 
 bool StaticMap::believed(const Voxel& voxel) const {

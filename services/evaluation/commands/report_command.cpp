@@ -10,7 +10,8 @@
 
 namespace rtd::eval {
 void add_report_command(CLI::App& parent, ReportOptions& options) {
-  CLI::App* command = parent.add_subcommand("report", "Write report.json, report.html and map.html of a run from its run.json");
+  CLI::App* command =
+      parent.add_subcommand("report", "Write report.json, report.html and map.html of a run from its run.json");
   command->add_option("folder", options.folder, "Folder that 'rtd run --out' wrote")->required();
   command->add_flag("--quiet", options.quiet, "Print no table");
 }

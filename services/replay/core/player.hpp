@@ -67,7 +67,7 @@ struct PlayerOptions {
   double rate = 1;             ///< 0: as fast as possible
   service::PacerConfig pacer;  ///< window > 0: the paced topic waits for answers instead of times
   bool paused = false, loop = false;
-  bool hold = false;  ///< pauses at the end instead of ending; to resume there is to begin again
+  bool hold = false;                      ///< pauses at the end instead of ending; to resume there is to begin again
   std::int64_t start_ns = 0, end_ns = 0;  ///< log_time of the first and last message
   std::int64_t clock_period_ns = 0;       ///< 0: no clock
 };
@@ -160,7 +160,7 @@ class Player {
   std::optional<std::int64_t> jump_to_;   ///< where the playhead is put with the next message
   std::int64_t last_recorded_ns_, next_tick_ns_ = 0;
   std::uint64_t sent_ = 0, steps_ = 0;
-  bool held_ = false;  ///< at the end
+  bool held_ = false;                     ///< at the end
   std::optional<Request> stepped_frame_;  ///< until the frame has gone
   std::optional<PlayOutcome> outcome_;
 };

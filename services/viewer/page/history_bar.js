@@ -40,6 +40,7 @@ export class HistoryBar {
     if (!this.moment) return;
     this.moment = null;
     this.onMoment(null);
+    this.update(this.robot);
   }
 
   #seek() {

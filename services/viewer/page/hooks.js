@@ -30,5 +30,8 @@ function summary(robot) {
   const { index, name, tracking, playback, truthError, commands, services, movers, image } = robot;
   return { index, name, tracking, playback, truthError, commands, services, movers, imageStamp_s: image?.stamp_s ?? null,
            maps: [...robot.maps.values()].map((map) => ({ id: map.id, keyframes: map.posedCount, points: map.pointCount,
-                                                          trajectory: map.trajectory.length, truth: map.truth.length / 3 })) };
+                                                          trajectory: map.trajectory.length, truth: map.truth.length / 3,
+                                                          dense: pointsOf(map.dense), moving: pointsOf(map.moving), plan: map.plan !== null })) };
 }
+
+const pointsOf = ({ parts }) => parts.reduce((sum, { positions }) => sum + positions.length / 3, 0);

@@ -378,7 +378,10 @@ TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
 }
 
 TEST_F(SupervisorTest, who_outlives_the_run_ends_when_asked) {
-  supervisor.start({.name = "viewer", .command = {"rtd-viewer"}, .role = ServiceRole::kOptional, .ends_last = true,
+  supervisor.start({.name = "viewer",
+                    .command = {"rtd-viewer"},
+                    .role = ServiceRole::kOptional,
+                    .ends_last = true,
                     .outlives_run = true},
                    now);
   start_all();
@@ -394,7 +397,10 @@ TEST_F(SupervisorTest, who_outlives_the_run_ends_when_asked) {
 }
 
 TEST_F(SupervisorTest, an_interrupted_run_is_outlived_by_none) {
-  supervisor.start({.name = "viewer", .command = {"rtd-viewer"}, .role = ServiceRole::kOptional, .ends_last = true,
+  supervisor.start({.name = "viewer",
+                    .command = {"rtd-viewer"},
+                    .role = ServiceRole::kOptional,
+                    .ends_last = true,
                     .outlives_run = true},
                    now);
   start_all();

@@ -66,7 +66,8 @@ TEST(MapPage, points_are_thinned_to_the_size_asked_and_lines_are_not) {
   EXPECT_GE(page.size(), 900'000U);
   const json layers = scene_of(page)["layers"];
   EXPECT_EQ(layers[1]["points"].get<std::string>().size(), 2000U * 8);
-  EXPECT_GT(point_of(layers[0], 0.99 * layers[0]["colors"].get<std::string>().size() / 4).x(), 195) << "over the whole length";
+  EXPECT_GT(point_of(layers[0], 0.99 * layers[0]["colors"].get<std::string>().size() / 4).x(), 195)
+      << "over the whole length";
 }
 
 TEST(MapPage, points_that_are_not_finite_are_left_out) {

@@ -34,8 +34,9 @@ std::optional<Eigen::Isometry3d> truth_in_map(const RunSummary& summary) {
 Layer read_static_map(std::istream& in) {
   constexpr std::size_t kVertexBytes = 19, kColorAt = 12;  // x y z, red green blue, weight
   Layer layer{.name = "Room"};
-  const std::string wanted = "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-                             "property uchar green\nproperty uchar blue\nproperty float weight\n";
+  const std::string wanted =
+      "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+      "property uchar green\nproperty uchar blue\nproperty float weight\n";
   std::string properties, text, format;
   std::size_t count = 0;
   while (std::getline(in, text) && text != "end_header") {

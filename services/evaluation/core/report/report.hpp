@@ -32,8 +32,8 @@ std::string report_html(const Run& run, const RunSummary& summary);
 /// The table that ends a run on the terminal.
 std::string summary_text(const Run& run, const RunSummary& summary, const std::string& folder);
 
-/// Writes DIR/report.json, DIR/report.html and DIR/map.html and returns the numbers. Throws std::runtime_error naming the file when
-/// one cannot be written; bad or missing trajectories become notes in both files.
+/// Writes DIR/report.json, DIR/report.html and DIR/map.html and returns the numbers. Throws std::runtime_error naming
+/// the file when one cannot be written; bad or missing trajectories become notes in both files.
 RunSummary write_report(const Run& run, const std::filesystem::path& folder);
 
 /// One run of a comparison.

@@ -49,7 +49,7 @@ void Supervisor::update(Clock now) {
   }
   if (!stopping_ || !others_ended()) return;
   for (Child& child : children_) {
-    if (!child.asked && !goes_on(child)) ask_to_end(child, now + grace_);
+    if (!child.asked && !continues(child)) ask_to_end(child, now + grace_);
   }
 }
 
@@ -80,7 +80,7 @@ void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
   rest_ends_ = rest_ends_ || again || why == RunOutcome::kInterrupted || why == RunOutcome::kConfigError;
   grace_ = grace;
   for (Child& child : children_) {
-    if (goes_on(child)) continue;
+    if (continues(child)) continue;
     const Clock kill_at = child.asked ? std::min(child.kill_at, now + grace) : now + grace;
     if (again || !child.plan.ends_last || child.state != State::kRunning) ask_to_end(child, kill_at);
   }
@@ -103,7 +103,7 @@ bool Supervisor::others_ended() const {
 }
 
 bool Supervisor::all_ended() const {
-  return std::ranges::all_of(children_, [this](const Child& c) { return goes_on(c) || c.state == State::kEnded; });
+  return std::ranges::all_of(children_, [this](const Child& c) { return continues(c) || c.state == State::kEnded; });
 }
 
 bool Supervisor::rest_runs() const {

@@ -25,8 +25,8 @@ struct ServicePlan {
   std::string name;
   std::vector<std::string> command;  ///< executable and arguments
   ServiceRole role = ServiceRole::kEssential;
-  int niceness = 0;        ///< see ProcessSpec
-  bool ends_last = false;  ///< stopped after all others: a recorder still receives their last messages
+  int niceness = 0;           ///< see ProcessSpec
+  bool ends_last = false;     ///< stopped after all others: a recorder still receives their last messages
   bool outlives_run = false;  ///< not stopped with a run that ended by itself, but by end_rest()
   /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
@@ -114,7 +114,7 @@ class Supervisor {
   void watch(Child& child, Clock now);
   void forgive_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
-  bool goes_on(const Child& child) const { return child.plan.outlives_run && !rest_ends_; }
+  bool continues(const Child& child) const { return child.plan.outlives_run && !rest_ends_; }
   bool others_ended() const;
   void decide(RunOutcome outcome);
   void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
