@@ -135,30 +135,6 @@ int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& er
   return service::kOk;
 }
 
-/// Returns the exit code.
-int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
-  if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
-  if (is_octomap(request.file)) return export_voxels(request, out, err);
-  if (request.format == "pgm")
-    throw UsageError(request.file +
-                     " holds landmarks, which are too few for a floor plan: 'rtd run --dense' writes one, "
-                     "and map.bt, from which this command makes others");
-  const slam::MapContents contents = read(request.file, err);
-  const MapReport report = report_on(contents, 0);
-  const MapPart& part = choose(report, request.map_id, err);
-  if (request.format == "bt")
-    err << "rtd map export: surfaces without landmarks are missing in this voxel map; 'rtd run --dense' writes a full "
-           "one, map.bt\n";
-  if (request.format == "html") return write_page(request, contents, part, out, err);
-  const auto write_to = [&](std::ostream& file) { write_part(contents, part, request.format, file); };
-  if (!write_file(request.out, err, write_to)) return service::kRunFailed;
-  out << fmt::format("{}: {} of map {}\n", request.out,
-                     request.format == "tum" ? fmt::format("{} keyframe poses", part.keyframes)
-                                             : fmt::format("{} landmarks", part.landmarks),
-                     part.id);
-  return service::kOk;
-}
-
 /// Red where a landmark may move, blue where it stays.
 map_page::Color color_of(float static_probability) {
   const auto level = static_cast<std::uint8_t>(255 * std::clamp(static_probability, 0.0F, 1.0F));
@@ -184,6 +160,30 @@ int write_page(const MapRequest& request, const slam::MapContents& contents, con
   if (!write_file(request.out, err, [&](std::ostream& file) { file << map_page::html(page); }))
     return service::kRunFailed;
   out << fmt::format("{}: {} landmarks of map {}, to open in a browser\n", request.out, part.landmarks, part.id);
+  return service::kOk;
+}
+
+/// Returns the exit code.
+int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
+  if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
+  if (is_octomap(request.file)) return export_voxels(request, out, err);
+  if (request.format == "pgm")
+    throw UsageError(request.file +
+                     " holds landmarks, which are too few for a floor plan: 'rtd run --dense' writes one, "
+                     "and map.bt, from which this command makes others");
+  const slam::MapContents contents = read(request.file, err);
+  const MapReport report = report_on(contents, 0);
+  const MapPart& part = choose(report, request.map_id, err);
+  if (request.format == "bt")
+    err << "rtd map export: surfaces without landmarks are missing in this voxel map; 'rtd run --dense' writes a full "
+           "one, map.bt\n";
+  if (request.format == "html") return write_page(request, contents, part, out, err);
+  const auto write_to = [&](std::ostream& file) { write_part(contents, part, request.format, file); };
+  if (!write_file(request.out, err, write_to)) return service::kRunFailed;
+  out << fmt::format("{}: {} of map {}\n", request.out,
+                     request.format == "tum" ? fmt::format("{} keyframe poses", part.keyframes)
+                                             : fmt::format("{} landmarks", part.landmarks),
+                     part.id);
   return service::kOk;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/msg/stamps.hpp"
 #include "common/vision/jpeg_size.hpp"
 #include "services/viewer/core/outbox.hpp"
 

@@ -141,3 +141,42 @@ test("a replay can be paused, stepped and sought from the page", async () => {
   await page.click("#pause");
   await waitFor(page, () => rtdViewer.state().robots[0].playback.state === "playing");
 });
+
+const kViewer = ["--set", "viewer.port=0"];
+const addressOf = async (service) => (await service.waitFor(/viewer: (http:\S*)/))[1];
+
+test("a run with --viewer waits for its page, shows the room, and the page stays until Ctrl-C", async () => {
+  const out = join(folder, "stays");
+  const run = start("run", "--source", `synthetic:office?frames=${kFrames}`, "--pace", "lockstep", "--detector", "off", "--out", out, "--viewer", ...kViewer);
+  await run.waitFor(/waits until the page is open/);
+  page = await openPage(browser, await addressOf(run));
+  await waitFor(page, () => rtdViewer.state().robots[0]?.maps[0]?.dense > 1000);
+  await run.waitFor(/the page stays until Ctrl-C: viewer: http/, 120);
+  assert.match(run.output, /frames .*120 used/);
+  assert.ok(existsSync(join(out, "map.html")) && !existsSync(join(out, "static_map.ply")));
+  await waitFor(page, () => document.getElementById("state-text").textContent === "The source has ended");
+  assert.equal(await page.evaluate(() => rtdViewer.state().connection), "open");
+  await screenshot(page, "live_stays");
+  assert.equal(await run.stop(), 0);
+});
+
+test("with --viewer=now,exit nothing waits", async () => {
+  const run = start("run", "--source", "synthetic:office?frames=20", "--pace", "lockstep", "--detector", "off", "--out", join(folder, "now"),
+                    "--viewer=now,exit", ...kViewer);
+  await addressOf(run);
+  assert.equal(await run.ended, 0);
+  assert.doesNotMatch(run.output, /waits until the page/);
+});
+
+test("a replay with --viewer waits for its page, stays at its end, and begins again", async () => {
+  const recording = join(folder, "short.mcap");
+  await start("run", "--source", "synthetic:office?frames=45", "--pace", "lockstep", "--detector", "off", "--out", join(folder, "short"), "--record", recording).ended;
+  const replay = start("replay", recording, "--viewer", ...kViewer);
+  await replay.waitFor(/waits_for_page/);
+  page = await openPage(browser, await addressOf(replay));
+  await waitFor(page, () => rtdViewer.state().robots[0]?.tracking?.seq >= 44);
+  await waitFor(page, () => rtdViewer.state().robots[0].playback.state === "paused" && !document.getElementById("pause").disabled);
+  await page.click("#pause");
+  await waitFor(page, () => rtdViewer.state().robots[0].tracking.seq < 40);
+  assert.equal(await replay.stop(), 0);
+});

@@ -92,6 +92,13 @@ TEST_F(MapCommand, exports_landmarks_and_poses_of_one_map) {
   EXPECT_THAT(poses, StartsWith("1700000000.000000 0.000000000 "));
 }
 
+TEST_F(MapCommand, exports_a_map_as_a_page) {
+  ASSERT_EQ(run({"export", file_, "--format", "html", "-o", path("map.html")}), 0) << err_.str();
+  const std::string page = read_text(path("map.html"));
+  EXPECT_THAT(page, testing::HasSubstr("Path of the keyframes"));
+  EXPECT_THAT(page, testing::EndsWith("</html>\n"));
+}
+
 TEST_F(MapCommand, names_what_prevents_an_export) {
   EXPECT_EQ(run({"export", file_, "--format", "ply", "-o", file_}), 2);
   EXPECT_THAT(err_.str(), HasSubstr("exists already"));

@@ -27,12 +27,12 @@ struct ServicePlan {
   ServiceRole role = ServiceRole::kEssential;
   int niceness = 0;           ///< see ProcessSpec
   bool ends_last = false;     ///< stopped after all others: a recorder still receives their last messages
-  bool outlives_run = false;  ///< not stopped with a run that ended by itself, but by end_rest()
   /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
   /// Of a live camera: whether it has ever given a frame. One that gave up before is not started again, because it has
   /// waited long enough; empty: it is.
   std::function<bool()> has_served = {};
+  bool outlives_run = false;  ///< not stopped with a run that ended by itself, but by end_rest()
 };
 
 struct SupervisorOptions {
