@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/bus_factory.hpp"
 
+#include <mutex>
 #include <utility>
 
 #include "common/bus/host/port_check.hpp"
@@ -23,13 +24,54 @@ struct Vendor {
   bool secures;  ///< honours BusOptions::security
 };
 
+#if defined(RTD_HAVE_FASTDDS) && defined(RTD_HAVE_CYCLONEDDS)
+/// A connection to Cyclone DDS that offers services through Fast DDS, from the first one on: Cyclone DDS cannot send
+/// what clients of rmw_fastrtps know their replies by, while Fast DDS answers clients of both.
+class ServesBoth : public BusBackend {
+ public:
+  explicit ServesBoth(const BusOptions& options)
+      : BusBackend(options.vendor), own_(cyclonedds::create_backend(options)), options_(options) {
+    options_.vendor = "fastdds";
+    options_.shared_memory = options_.iceoryx = false;
+  }
+  std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
+                                               StatusCallbacks callbacks) override {
+    return own_->create_writer(id, topic, profile, std::move(callbacks));
+  }
+  std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
+                                               ErasedCallback on_message, StatusCallbacks callbacks) override {
+    return own_->create_reader(id, topic, profile, std::move(on_message), std::move(callbacks));
+  }
+  std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
+    if (role == CallRole::kClient) return own_->create_calls(topics, role, std::move(on_call));
+    const std::lock_guard lock(mutex_);
+    if (!serving_) serving_ = fastdds::create_backend(options_);
+    return serving_->create_calls(topics, role, std::move(on_call));
+  }
+
+ private:
+  const std::shared_ptr<BusBackend> own_;
+  BusOptions options_;  ///< of serving_
+  std::mutex mutex_;
+  std::shared_ptr<BusBackend> serving_;
+};
+
+/// A secured domain has one vendor only.
+std::shared_ptr<BusBackend> create_cyclonedds(const BusOptions& options) {
+  if (options.security.enabled()) return cyclonedds::create_backend(options);
+  return std::make_shared<ServesBoth>(options);
+}
+#elif defined(RTD_HAVE_CYCLONEDDS)
+constexpr auto create_cyclonedds = cyclonedds::create_backend;
+#endif
+
 /// A new vendor is a folder beside this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
     {"fastdds", fastdds::create_backend, fastdds::create_raw_bus, true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
-    {"cyclonedds", cyclonedds::create_backend, cyclonedds::create_raw_bus, true},
+    {"cyclonedds", create_cyclonedds, cyclonedds::create_raw_bus, true},
 #endif
     {"inprocess", inprocess::create_backend, inprocess::create_raw_bus, false},
 };

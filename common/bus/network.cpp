@@ -103,6 +103,10 @@ std::vector<std::string> interface_addresses(const NetworkOptions& network) {
   return addresses;
 }
 
+bool is_own_address(const std::string& address) {
+  return std::ranges::any_of(network_interfaces(), [&](const Interface& one) { return one.address == address; });
+}
+
 bool stays_on_host(std::string_view topic) {
   const std::string name = split_robot(topic).topic;
   const auto frames = frame_topics();

@@ -14,8 +14,9 @@
 namespace rtd::bus {
 
 /// Participants of a host that a peer without a port is asked for: those at the discovery ports of the first ids of a
-/// domain, 7410 + 250 * domain + 2 * id. On a network every participant of ours takes the first free one of them.
-inline constexpr int kPeerParticipants = 16;
+/// domain, 7410 + 250 * domain + 2 * id. Every participant of ours takes the first free one of them. ROS 2 with
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST finds others by asking as many, on loopback.
+inline constexpr int kPeerParticipants = 32;
 
 /// Why a vendor may refuse to join a domain.
 inline constexpr char kMayBeRefused[] =
@@ -36,6 +37,9 @@ HostAddress resolve_host(const std::string& text, const std::string& option);
 /// IPv4 addresses of the interfaces to use beside loopback: those named, or all that are up but bridges (those of
 /// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
 std::vector<std::string> interface_addresses(const NetworkOptions& network);
+
+/// Whether an interface of this host has this IPv4 address.
+bool is_own_address(const std::string& address);
 
 /// Topics of any robot that no other host gets: raw frames and features, 1.5 and 0.1 MB thirty times a second. Their
 /// writers on a network are in the partition host_partition() only, our readers ask for it and for the default one.

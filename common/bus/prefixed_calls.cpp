@@ -19,6 +19,10 @@ void reverse_numbers(std::byte* prefix) {
 
 }  // namespace
 
+bool is_prefixed(const CallId& id) {
+  return std::all_of(id.client.begin() + kNumber, id.client.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
 std::vector<std::byte> with_prefix(const CallId& id, std::span<const std::byte> cdr) {
   std::vector<std::byte> sample(cdr.begin(), cdr.end());
   sample.insert(sample.begin() + kHeader, kPrefix, std::byte{0});

@@ -17,6 +17,9 @@ struct PrefixedCall {
   std::vector<std::byte> cdr;  ///< without the prefix
 };
 
+/// Whether the client is known by its number in a prefix, and not by the GUID of an endpoint, which never ends in zeros.
+bool is_prefixed(const CallId& id);
+
 /// The sample with the prefix, little endian. `cdr` has at least its header.
 std::vector<std::byte> with_prefix(const CallId& id, std::span<const std::byte> cdr);
 

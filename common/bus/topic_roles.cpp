@@ -88,6 +88,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kPose.name, {"slam", "link"}, kOnlookers},
       {kTf.name, {"slam", "link"}, kOnlookers},
       {kTfStatic.name, {"camera"}, {"slam"}},
+      {kMapJumps.name, {"slam"}, kOnlookers},
       {kPath.name, {"slam"}, kOnlookers},
       {kMapPoints.name, {"slam"}, kOnlookers},
       {kDensePoints.name, {"dense"}, kOnlookers},

@@ -42,6 +42,8 @@ inline constexpr Topic<msg::TFMessage> kTf{"rt/tf", QosProfile::kPose};
 /// Where the parts of the robot are. Several nodes write it, each its own part: a reader must hold more than one
 /// message.
 inline constexpr Topic<msg::TFMessage> kTfStatic{"rt/tf_static", QosProfile::kKeyframes};
+/// Each step of `map` -> `odom`: what it does to coordinates in `map` (docs/frames.md).
+inline constexpr Topic<msg::TransformStamped> kMapJumps{"rt/slam/map_jumps", QosProfile::kLatched};
 inline constexpr Topic<msg::Path> kPath{"rt/slam/path", QosProfile::kPose};
 inline constexpr Topic<msg::PointCloud2> kMapPoints{"rt/slam/map_points", QosProfile::kLatched};
 inline constexpr Topic<msg::PointCloud2> kDensePoints{"rt/dense/points", QosProfile::kLatched};

@@ -52,6 +52,10 @@ bool names_a_place(const std::string& frame_id) {
   return !geometry::bare_frame(frame_id).empty() && frame_id != "0";
 }
 
+std::string place_named(const std::string& frame_id) {
+  return names_a_place(frame_id) ? geometry::bare_frame(frame_id) : std::string();
+}
+
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth) {
   return names_a_place(color.frame_id) && geometry::bare_frame(color.frame_id) == geometry::bare_frame(depth.frame_id);
 }

@@ -25,6 +25,8 @@ std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth)
 
 /// Whether a frame id says where an image was taken: neither empty nor the "0" of RealSense SDK bags.
 bool names_a_place(const std::string& frame_id);
+/// The frame without a slash in front; empty when it names no place.
+std::string place_named(const std::string& frame_id);
 
 /// Both images are in one frame that has a name: what differs is the raster alone.
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth);

@@ -111,7 +111,11 @@ std::uint64_t PlayedSource::pass_over(std::int64_t stamp_ns) {
     if (!gone_to_) gone_to_ = advance();
     if (!gone_to_ || *gone_to_ >= stamp_ns) break;
     gone_to_.reset();
-    ++passed;
+    if (is_there()) {
+      ++passed;
+    } else {
+      decode();  // which counts why it is no frame
+    }
   }
   skips_.counters().frames += passed;
   return passed;

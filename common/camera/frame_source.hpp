@@ -120,6 +120,7 @@ struct SourceInfo {
   std::vector<std::string> remarks = {};     ///< what is wrong with it although it is played: a ground truth not used
   bool has_imu = false, has_wheels = false;  ///< frames come with what they measured
   Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();  ///< of the wheels' base; of synthetic sources
+  std::string frame_id = {};  ///< of the colour images, as their driver names it; empty: it does not
 };
 
 /// A sequence of RGB-D frames. Errors at opening throw SourceError; single bad frames are skipped and counted.
@@ -184,6 +185,8 @@ class PlayedSource : public FrameSource {
   virtual std::optional<std::int64_t> advance() = 0;
   /// Decodes the frame gone to; empty when it cannot be used.
   virtual std::optional<SourceFrame> decode() = 0;
+  /// Whether there is anything to decode, without the work of it: what is passed over counts as a frame if there is.
+  virtual bool is_there() const { return true; }
   /// Ends opening. Throws SourceError naming the file when it has no good frame.
   void read_first(const std::string& file);
 

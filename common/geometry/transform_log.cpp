@@ -112,6 +112,11 @@ std::optional<Eigen::Isometry3d> TransformLog::between(const std::string& target
   return std::nullopt;
 }
 
+std::pair<std::string, Eigen::Isometry3d> TransformLog::root_of(const std::string& frame) const {
+  const Above root = chain_from(frame).back();
+  return {root.frame, root.T_frame_start};
+}
+
 bool TransformLog::knows(const std::string& frame) const {
   const std::string bare = bare_frame(frame);
   return links_.contains(bare) ||

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
@@ -35,6 +36,8 @@ class TransformLog {
                                               std::int64_t max_gap_ns) const;
   /// T_target_source by the newest transforms; empty when no chain joins the two frames.
   std::optional<Eigen::Isometry3d> between(const std::string& target, const std::string& source) const;
+  /// The frame that all transforms above `frame` lead to, and T_root_frame; the frame itself without any.
+  std::pair<std::string, Eigen::Isometry3d> root_of(const std::string& frame) const;
   /// Whether a transform begins or ends at this frame.
   bool knows(const std::string& frame) const;
   /// All of these, sorted.

@@ -19,6 +19,7 @@ struct TypeList {};
 using MessageTypes =
     TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent, TrackingResult,
              ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray, Odometry, PoseStamped, TFMessage,
-             Path, PointCloud2, DiagnosticArray, MapUpdate, Movers, Detection3DArray, MarkerArray, OccupancyGrid>;
+             Path, PointCloud2, DiagnosticArray, MapUpdate, Movers, Detection3DArray, MarkerArray, OccupancyGrid,
+             TransformStamped>;
 
 }  // namespace rtd::msg

@@ -136,18 +136,21 @@ DdsSetting name_profile(const char* variable, const std::string& value) {
           false};
 }
 
-/// Ours is this host only unless a profile says otherwise.
+/// Ours is this host only unless a profile says otherwise. Where ROS 2 knows both variables, the older one wins.
 std::optional<DdsSetting> compare_range(const EnvironmentReader& environment, const bus::BusOptions& options) {
-  const auto is = [&](const char* name, const char* value) { return environment(name).value_or("") == value; };
-  const char* variable = is("ROS_LOCALHOST_ONLY", "1")                      ? "ROS_LOCALHOST_ONLY=1"
-                         : is("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST") ? "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"
-                         : is("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")       ? "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF"
-                                                                            : nullptr;
-  if (variable == nullptr) return std::nullopt;
-  const bool off = std::string(variable).ends_with("OFF");
-  if (off) return DdsSetting{std::string(variable) + ": ROS 2 programs with it find no other one, rtd neither", false};
-  if (options.network.loopback_only) return DdsSetting{std::string(variable) + ": as here, this host only", true};
-  return DdsSetting{std::string(variable) + ": ROS 2 programs with it stay on this host, while rtd uses the network",
+  const std::string range = environment("ROS_AUTOMATIC_DISCOVERY_RANGE").value_or("");
+  const bool localhost_only = environment("ROS_LOCALHOST_ONLY").value_or("") == "1";
+  const std::string what = localhost_only ? "ROS_LOCALHOST_ONLY=1" : "ROS_AUTOMATIC_DISCOVERY_RANGE=" + range;
+  const bool this_host = options.network.loopback_only;
+  if (localhost_only || range == "LOCALHOST") {
+    if (this_host) return DdsSetting{what + ": as here, this host only", true};
+    return DdsSetting{what + ": ROS 2 programs with it stay on this host, while rtd uses the network", false};
+  }
+  if (range == "OFF") return DdsSetting{what + ": ROS 2 programs with it find no other one, rtd neither", false};
+  if (range != "SUBNET") return std::nullopt;
+  if (!this_host) return DdsSetting{what + ": as here, the network", true};
+  return DdsSetting{fmt::format("{}: ROS 2 programs with it use the network, rtd only this host; {} uses it, too", what,
+                                kNetwork),
                     false};
 }
 

@@ -229,6 +229,12 @@ std::optional<double> Heartbeat::metric_on_this_host(const std::string& service,
   return find_metric(peer->status, metric);
 }
 
+std::string Heartbeat::word_of(const std::string& service, const std::string& prefix) const {
+  const std::lock_guard lock(mutex_);
+  const Peer* const peer = find(service);
+  return peer == nullptr ? std::string() : msg::word_of(peer->status, prefix);
+}
+
 bool Heartbeat::ready(const std::string& service) const {
   if (!alive(service)) return false;
   const std::lock_guard lock(mutex_);

@@ -36,6 +36,7 @@ inline constexpr char kFramesSkipped[] = "frames_skipped";
 inline constexpr char kFramesWithoutDepth[] = "frames_without_depth";
 inline constexpr char kFramesOutOfRange[] = "frames_out_of_range";  ///< no depth is one that slam uses, or none at all
 inline constexpr char kFramesLeftOut[] = "frames_left_out";         ///< the source had them, and could not give them
+inline constexpr char kFrameIdPrefix[] = "frame_id.";               ///< and the name of the camera's frame
 inline constexpr char kLeftOutPrefix[] = "left_out.";               ///< and the name of the reason
 inline constexpr char kFramesRefused[] = "frames_refused";
 inline constexpr char kReconnects[] = "reconnects";

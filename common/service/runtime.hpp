@@ -63,6 +63,8 @@ class Heartbeat {
   bool alone() const;                            ///< no other service has sent a heartbeat yet
   /// A metric of another service that is alive and runs on this host.
   std::optional<double> metric_on_this_host(const std::string& service, const std::string& metric) const;
+  /// A word that another service has shown last (msg::word_of); empty when it has not.
+  std::string word_of(const std::string& service, const std::string& prefix) const;
   /// Whether the process of a connection is known to have ended. To be used while this lives.
   std::function<bool(const bus::ParticipantId&)> process_gone() const {
     return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };

@@ -13,6 +13,7 @@
 #include "common/camera/live_uri.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
@@ -96,7 +97,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
   const SourceInfo& info = source_->info();
   if (info.has_imu || info.has_wheels) {
     motion_.emplace(runtime.bus_options, info,
-                    MotionFrames{runtime.bus.frame("camera_color_optical_frame"), runtime.bus.frame("wheel_odom"),
+                    MotionFrames{runtime.bus.frame(msg::kCameraFrame), runtime.bus.frame("wheel_odom"),
                                  runtime.bus.frame("base_link")});
   }
   if (!config_.beside.empty()) open_beside();
@@ -150,6 +151,7 @@ CameraService::Outcome CameraService::open() {
 void CameraService::open_publisher() {
   const auto& camera = source_->info().camera.parameters();
   publisher_.open({camera.width, camera.height});
+  publisher_.name_frame(service::announce_camera_frame(runtime_.heartbeat, runtime_.bus, source_->info().frame_id));
 }
 
 /// Called by the source: in open(), later in the thread that reads ahead.

@@ -49,8 +49,7 @@ bus::StatusCallbacks on_match(const std::function<void()>& notify) {
 
 JpegPublisher::JpegPublisher(bus::Bus& bus, int quality, concurrency::Overflow overflow,
                              const std::function<void()>& on_matched)
-    : frame_id_(bus.frame(kCameraFrame)),
-      writer_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched))),
+    : writer_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched))),
       quality_(quality),
       waiting_(kMaxWaiting, overflow),
       thread_([this] {
@@ -63,19 +62,19 @@ JpegPublisher::~JpegPublisher() {
   thread_.join();
 }
 
-void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns) {
+void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns, const std::string& frame_id) {
   if (writer_.matched() == 0) return;
   constexpr double kEarly = 0.9;  // of the period: stamps jitter
   const bool too_soon =
       max_hz_ > 0 && stamp_ns > offered_ns_ && static_cast<double>(stamp_ns - offered_ns_) < kEarly * 1e9 / max_hz_;
   if (too_soon) return;
   offered_ns_ = stamp_ns;
-  waiting_.push({color_bgr, stamp_ns});
+  waiting_.push({color_bgr, {msg::to_time(stamp_ns), frame_id}});
 }
 
 void JpegPublisher::publish(const Waiting& image) {
   msg::CompressedImage message;
-  message.header = {msg::to_time(image.stamp_ns), frame_id_};
+  message.header = image.header;
   message.format = "bgr8; jpeg compressed bgr8";
   message.data = vision::encode_jpeg(image.color_bgr, quality_);
   if (message.data.empty()) return;
@@ -94,6 +93,7 @@ FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Ove
     : bus_(bus),
       on_matched_(std::move(on_matched)),
       source_id_(random_id()),
+      frame_id_(bus.frame(kCameraFrame)),
       infos_(bus.writer(bus::topics::kCameraInfo)),
       jpegs_(bus, jpeg_quality, jpeg_overflow, on_matched_) {}
 
@@ -108,9 +108,9 @@ void FramePublisher::open(cv::Size size_px) {
 bool FramePublisher::publish(const vision::RgbdImage& image) {
   if (image.color_bgr.size() != size_px_) open(image.color_bgr.size());
   const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
-  jpegs_.offer(image.color_bgr, image.stamp_ns);
+  jpegs_.offer(image.color_bgr, image.stamp_ns, frame_id_);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
-    infos_.write(to_camera_info(image.camera, image.stamp_ns, bus_.frame(kCameraFrame)));
+    infos_.write(to_camera_info(image.camera, image.stamp_ns, frame_id_));
   }
   return taken;
 }

@@ -11,12 +11,14 @@
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/msg/camera_frame.hpp"
 #include "services/camera/core/beside_frames.hpp"
 
 namespace rtd::camera {
@@ -34,7 +36,7 @@ class JpegPublisher {
   JpegPublisher& operator=(const JpegPublisher&) = delete;
 
   /// Takes an image (8-bit BGR, shared: not to be changed any more) if the topic has readers.
-  void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns);
+  void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns, const std::string& frame_id = msg::kCameraFrame);
   /// Images beyond this rate, by their stamps, are left out from now on; 0 = no limit. The thread of offer().
   void limit_rate(double max_hz) { max_hz_ = max_hz; }
   int readers() const { return writer_.matched(); }
@@ -46,11 +48,10 @@ class JpegPublisher {
  private:
   struct Waiting {
     cv::Mat color_bgr;
-    std::int64_t stamp_ns = 0;
+    msg::Header header;
   };
   void publish(const Waiting& image);
 
-  const std::string frame_id_;
   bus::Writer<msg::CompressedImage> writer_;
   int quality_;
   double max_hz_ = 0;
@@ -138,6 +139,8 @@ class FramePublisher {
   /// Chooses the frame topic for images of this size, before the first frame. Throws bus::BusError when images are too
   /// large.
   void open(cv::Size size_px);
+  /// Of the images, on the wire; before the first frame.
+  void name_frame(std::string frame_id) { frame_id_ = std::move(frame_id); }
   /// False when the bus did not take the raw frame. A frame of another size opens its topic, as a source of its own.
   bool publish(const vision::RgbdImage& image);
   /// Readers of the raw frame and of the JPEG topic.
@@ -150,6 +153,7 @@ class FramePublisher {
   bus::Bus& bus_;
   std::function<void()> on_matched_;
   std::uint64_t source_id_;
+  std::string frame_id_;
   bus::FrameWriter frames_;
   bus::Writer<msg::CameraInfo> infos_;
   bool info_sent_ = false;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -215,16 +216,20 @@ void DenseService::publish_cloud() {
   if (!due || totals_.frames == 0 || !(read || moving_read)) return;
   published_ns_ = now_ns;
   const std::string frame = runtime_.bus.frame(config_.map_frame);
+  const bool shown = !joiner_->elsewhere();  // none in another map: they would be shown where they are not
   const auto most = static_cast<std::size_t>(config_.publish_max_points);
-  if (read) cloud_writer_.write(make_cloud(map_.cloud(most), newest_stamp_ns_, frame));
-  if (moving_read) moving_writer_.write(make_cloud(map_.moving(), newest_stamp_ns_, frame));
+  using Points = std::vector<CloudPoint>;
+  if (read) cloud_writer_.write(make_cloud(shown ? map_.cloud(most) : Points(), newest_stamp_ns_, frame));
+  if (moving_read) moving_writer_.write(make_cloud(shown ? map_.moving() : Points(), newest_stamp_ns_, frame));
 }
 
 /// Costs nothing without subscribers, and nothing while nothing changes.
 void DenseService::publish_grid() {
   const std::int64_t now_ns = service::monotonic_ns();
   const bool due = now_ns - grid_published_ns_ >= std::int64_t{config_.grid.publish_period_ms} * 1'000'000;
-  if (!navigation_ || !due || !grid_stale_ || grid_writer_.matched() == 0) return;
+  if (!navigation_ || !due || grid_writer_.matched() == 0) return;
+  if (joiner_->elsewhere()) return forget_published_grid();
+  if (!grid_stale_) return;
   const service::TraceSpan span(runtime_.trace, "grid", totals_.frames);
   grid_published_ns_ = now_ns;
   grid_stale_ = !navigation_->follow_corrections(kMovesPerTick);
@@ -233,6 +238,16 @@ void DenseService::publish_grid() {
   const std::string frame = runtime_.bus.frame(config_.map_frame);
   grid_writer_.write(make_grid(*grid, navigation_->R_grid_map(), newest_stamp_ns_, frame));
   published_grid_ = std::move(*grid);
+}
+
+/// Nothing is known about another map. Readers keep the last plan: it is taken back.
+void DenseService::forget_published_grid() {
+  constexpr auto is_unknown = [](std::int8_t cell) { return cell == NavigationGrid::kUnknown; };
+  if (std::ranges::all_of(published_grid_.cells, is_unknown)) return;
+  std::ranges::fill(published_grid_.cells, NavigationGrid::kUnknown);
+  grid_writer_.write(make_grid(published_grid_, navigation_->R_grid_map(), newest_stamp_ns_,
+                               runtime_.bus.frame(config_.map_frame)));
+  grid_stale_ = true;
 }
 
 /// What has come is worked off, and slam's last corrections are followed.

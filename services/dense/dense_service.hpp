@@ -109,6 +109,7 @@ class DenseService {
   void count(const FusionReport& report);
   void publish_cloud();
   void publish_grid();
+  void forget_published_grid();
   void finish();
   bool ready();
   std::string trouble();

@@ -48,6 +48,7 @@ void FrameJoiner::put(const msg::TrackingResult& result) {
   const std::lock_guard lock(mutex_);
   if (with_stamp(results_, result.stamp_ns) != results_.end() || last_stamp_ns_ == result.stamp_ns) return;
   results_.push_back(result);
+  if (msg::is_measured(result.state)) elsewhere_ = !msg::is_measured_in_map(result);
   if (results_.size() > kResults) ++counters_.without_image;
   keep_newest(results_, kResults);
   arrived_.notify_one();
@@ -142,6 +143,11 @@ std::vector<KeyframeUpdate> FrameJoiner::take_updates() {
   std::vector<KeyframeUpdate> updates(updates_.begin(), updates_.end());
   updates_.clear();
   return updates;
+}
+
+bool FrameJoiner::elsewhere() const {
+  const std::lock_guard lock(mutex_);
+  return elsewhere_;
 }
 
 JoinCounters FrameJoiner::counters() const {

@@ -60,6 +60,8 @@ class FrameJoiner {
   /// All updates that were not taken with a frame.
   std::vector<KeyframeUpdate> take_updates();
   JoinCounters counters() const;
+  /// The newest pose is in another map than the first, the only one that is fused: `map` is another frame now.
+  bool elsewhere() const;
 
  private:
   enum class Verdict { kReady, kWait, kDone };
@@ -84,7 +86,7 @@ class FrameJoiner {
   std::uint64_t next_event_ = 0;  ///< events 0 .. n-1 have come or never will
   std::optional<std::int64_t> last_stamp_ns_;
   JoinCounters counters_;
-  bool closed_ = false;
+  bool elsewhere_ = false, closed_ = false;
 };
 
 }  // namespace rtd::dense

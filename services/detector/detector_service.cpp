@@ -12,6 +12,7 @@
 
 #include "common/msg/engine_names.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
@@ -233,7 +234,7 @@ std::optional<DetectorService::Found> DetectorService::detect(std::size_t worker
       const double roll_rad = roll_for(arrival);
       const auto boxes = detector.detect_upright(*image, roll_rad);
       const double boxes_ms = static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs;
-      Found found{to_message(boxes, arrival.stamp_ns, runtime_.bus.frame(kCameraFrame)), std::nullopt};
+      Found found{to_message(boxes, arrival.stamp_ns, service::camera_frame(runtime_.heartbeat, runtime_.bus)), std::nullopt};
       found.masks = find_masks(worker, {*image, boxes, roll_rad, boxes_ms}, found.detections.header);
       report_engine(detector);
       count(boxes_ms);

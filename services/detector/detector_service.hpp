@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/concurrency/bounded_queue.hpp"
+#include "common/msg/camera_frame.hpp"
 #include "common/msg/ros.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
@@ -60,12 +61,9 @@ class EngineLog {
   bool verified_ = false;
 };
 
-/// The optical frame of the colour camera, in which boxes are given (docs/frames.md).
-inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
-
 /// vision_msgs: box centre and size in px, class_id = class name, header.stamp = stamp of the image.
 msg::Detection2DArray to_message(const std::vector<vision::Detection>& detections, std::int64_t stamp_ns,
-                                 const std::string& camera_frame = kCameraFrame);
+                                 const std::string& camera_frame = msg::kCameraFrame);
 
 /// Section `detector` of the configuration.
 struct ServiceConfig {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/msg/camera_frame.hpp"
 #include "common/msg/features.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/ros.hpp"
@@ -35,12 +36,9 @@ SlamKeyframe to_slam_keyframe(const msg::KeyframeEvent& event);
 void fill_message(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use,
                   msg::FeatureFrame& message);
 
-/// The optical frame of the colour camera (docs/frames.md).
-inline constexpr const char* kCameraFrame = "camera_color_optical_frame";
-
 /// What moves, as a grey image of grid cells (4x4 undistorted pixels each) with the values of CellMotion and the stamp
 /// of the frame. Mode off takes everything to be static: all its cells are.
 msg::Image make_mask(const msg::FrameView& frame, const FilterResult& result,
-                     const std::string& camera_frame = kCameraFrame);
+                     const std::string& camera_frame = msg::kCameraFrame);
 
 }  // namespace rtd::filter

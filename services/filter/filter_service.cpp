@@ -13,6 +13,7 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/stamps.hpp"
 #include "common/msg/word_list.hpp"
+#include "common/service/camera_frame.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -159,14 +160,20 @@ void FilterService::process(Work work) {
 
   FilterResult result = filter_.judge(image, std::move(extraction), detector);
   result.stage_ms[msg::kStageWaitDetections] = static_cast<float>(static_cast<double>(waited_ns) * 1e-6);
-  fill_message(frame, result, use_of(detector, result, frame.stamp_ns), *message_);
+  fill_next(frame, result, use_of(detector, result, frame.stamp_ns));
   trace(waiting_since_ns, judging_since_ns);
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
-  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, runtime_.bus.frame(kCameraFrame)));
+  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, service::camera_frame(runtime_.heartbeat, runtime_.bus)));
   if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(image, result));
   ++published_;
   count(result);
+}
+
+void FilterService::fill_next(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use) {
+  msg::FeatureFrame& next = messages_.add();
+  fill_message(frame, result, use, next);
+  message_ = &next;
 }
 
 /// Of the message before it is written.
@@ -192,16 +199,21 @@ bool FilterService::accept(const Arrival& arrival) {
     return false;
   }
   if (published_ == 0) return true;
-  if (frame.seq == message_->seq && frame.stamp_ns == message_->stamp_ns) {
-    writer_.write(*message_);
+  if (const msg::FeatureFrame* const sent = messages_.find(frame.seq, frame.stamp_ns)) {
+    writer_.write(*sent);
     return false;
   }
+  if (messages_.left_behind(frame.seq, frame.stamp_ns)) return false;  // slam has answered a newer one, and so this one
+  follow_time(frame);
+  return true;
+}
+
+void FilterService::follow_time(const msg::FrameView& frame) {
   if (frame.stamp_ns <= message_->stamp_ns) {
     forget_views(frame, "time went back");
   } else if (frame.intrinsics != message_->intrinsics) {
     forget_views(frame, "another calibration");
   }
-  return true;
 }
 
 /// What was seen before cannot be compared with this frame.
@@ -217,7 +229,7 @@ void FilterService::forget_views(const msg::FrameView& frame, const char* cause)
 void FilterService::publish_no_features(const msg::FrameView& frame, const std::string& cause) {
   runtime_.heartbeat.set_metric(service::metric::kFramesDefective, static_cast<double>(++defective_));
   if (defect_log_.pass()) SPDLOG_WARN("event=frame_defective frame={} cause=\"{}\"", frame.seq, cause);
-  fill_message(frame, {}, msg::DetectionUse::kNone, *message_);
+  fill_next(frame, {}, msg::DetectionUse::kNone);
   writer_.write(*message_);
 }
 

@@ -19,6 +19,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/log.hpp"
+#include "common/service/recent_messages.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
 #include "services/filter/config.hpp"
@@ -78,6 +79,8 @@ class FilterService {
   bool detector_alive() const;
   void follow_camera(std::uint64_t changes);
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
+  void fill_next(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use);
+  void follow_time(const msg::FrameView& frame);
   void trace(std::int64_t waiting_since_ns, std::int64_t judging_since_ns);
   void apply_slam_feedback();
   std::int64_t wait_for_slam(std::uint64_t seq);
@@ -113,7 +116,8 @@ class FilterService {
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::KeyframeEvent> keyframe_reader_;
 
-  std::unique_ptr<msg::FeatureFrame> message_ = std::make_unique<msg::FeatureFrame>();
+  service::RecentMessages<msg::FeatureFrame> messages_;
+  const msg::FeatureFrame* message_ = nullptr;  ///< the newest; null until there is one
   std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
   bool detector_seen_ = false, detector_gone_ = false, slam_seen_ = false;
   std::atomic<bool> detector_masks_{false};                  ///< its heartbeat says that it sends masks

@@ -123,10 +123,10 @@ void MoversPublisher::on_result(const msg::TrackingResult& result) {
   const Waiting frame = std::move(waiting_.front());
   waiting_.pop_front();
   if (!msg::is_measured(result.state)) return;  // what is in view now may be known again when the camera is
-  if (!msg::is_measured_in_map(result)) return movers_.clear();
+  if (std::exchange(map_, result.map_id) != result.map_id) movers_.clear();  // another map is `map`: all has moved
   const std::vector<WorldMover> movers =
       movers_.place(frame.stamp_ns, msg::to_isometry(result.T_world_camera), frame.sightings);
-  if (writer_.matched() > 0) {
+  if (writer_.matched() > 0 && msg::is_measured_in_map(result)) {
     msg::Movers message{frame.seq, frame.stamp_ns, {}};
     for (const WorldMover& mover : movers) message.movers.push_back(to_message(mover));
     writer_.write(message);

@@ -23,7 +23,7 @@ msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, std::int64_
 
 /// Publishes where the objects of each frame are, once slam has said where the camera was: one frame later.
 /// `rtd/movers` says most; `rt/filter/movers` and `rt/filter/movers_markers` are for programs of ROS 2. Frames that
-/// slam did not track in frame `map` have no movers. Each topic costs nothing while it has no reader. One thread.
+/// slam did not track have no movers; `rtd/movers` has those of the first map only. Each topic costs nothing while it has no reader. One thread.
 class MoversPublisher {
  public:
   /// `map_frame`: name on the wire.
@@ -50,6 +50,7 @@ class MoversPublisher {
   std::string map_frame_;
   std::deque<Waiting> waiting_;  ///< by seq
   WorldMovers movers_;
+  std::uint32_t map_ = 0;  ///< that the last tracked frame was in
 };
 
 }  // namespace rtd::filter

@@ -14,6 +14,7 @@
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/io/fd_writing.hpp"
+#include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
@@ -131,19 +132,25 @@ ServiceConfig with_mount(ServiceConfig config, service::Runtime& runtime) {
   if (!config.base.from_tf()) return config;
   constexpr std::chrono::milliseconds kStep{50};
   constexpr std::size_t kQueue = 64;
-  const std::string base = runtime.bus.frame(config.base.frame), camera = runtime.bus.frame(config.camera_frame);
+  const std::string base = runtime.bus.frame(config.base.frame);
   const auto queue = std::make_shared<Transforms>(kQueue, concurrency::Overflow::kDropOldest);
   const auto reader = runtime.bus.reader<msg::TFMessage>(
       bus::topics::kTfStatic, [queue](const std::shared_ptr<const msg::TFMessage>& message) { queue->push(*message); });
   geometry::TransformLog log;
   service::RateLimit progress(std::chrono::seconds(2));
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(config.base.tf_timeout_s);
-  for (std::string missing; !(missing = missing_between(base, camera, log)).empty();) {
+  const auto camera_frame = [&] { return service::camera_frame(runtime.heartbeat, runtime.bus, config.camera_frame); };
+  // A camera that waits for its driver does not know the name yet, and ends by itself when the driver does not come.
+  const auto may_be_named = [&] {
+    return runtime.heartbeat.alive("camera") && !service::knows_camera_frame(runtime.heartbeat, config.camera_frame);
+  };
+  std::string camera = camera_frame();
+  for (std::string missing; !(missing = missing_between(base, camera, log)).empty(); camera = camera_frame()) {
     if (runtime.stop.stop_requested()) {
       config.base.camera = "0,0,0,0,0,0,1";  // the service ends before its first frame
       return config;
     }
-    if (std::chrono::steady_clock::now() > end) {
+    if (std::chrono::steady_clock::now() > end && !may_be_named()) {
       throw service::ConfigError(fmt::format(
           "slam.base.camera=tf: {} on rt/tf_static after {:g} s. Does a robot_state_publisher run in this domain, and "
           "are the frames those of slam.base.frame and slam.camera_frame? Or give the mount as "

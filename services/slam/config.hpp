@@ -27,7 +27,7 @@ struct ServiceConfig {
   std::string out_dir;
   std::string map_frame = "map";
   std::string odom_frame = "odom";
-  std::string camera_frame = "camera_color_optical_frame";
+  std::string camera_frame;
   int path_length = 2000;
   int path_period_ms = 500;
   int map_period_ms = 1000;
@@ -56,7 +56,7 @@ struct ServiceConfig {
         .option("--out");
     binder.field("map_frame", map_frame, "frame of the poses and of the map");
     binder.field("odom_frame", odom_frame, "frame of the odometry: smooth, map -> odom takes up the corrections");
-    binder.field("camera_frame", camera_frame, "child frame of the poses: optical");
+    binder.field("camera_frame", camera_frame, "child frame of the poses, optical; empty: as the images name it");
     binder.field("path_length", path_length, {1, 1000000}, "poses kept for rt/slam/path");
     binder.field("path_period_ms", path_period_ms, {1, 60000}, "time between two path messages");
     binder.field("map_period_ms", map_period_ms, {1, 60000}, "time between two clouds on rt/slam/map_points");

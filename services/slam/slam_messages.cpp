@@ -13,6 +13,8 @@ namespace rtd::slam {
 namespace {
 
 constexpr double kNsPerS = 1e9;
+constexpr double kUnknown = 1e6;     // a variance, m2 and rad2: receivers take no message with numbers that are none
+constexpr double kByDefinition = 1e-8;  // m2 and rad2: the first pose of a map; filters refuse a covariance of zeros
 
 using geometry::RowMajor6d;
 
@@ -22,12 +24,26 @@ msg::Pose to_pose(const msg::Transform& T) {
   return {{x, y, z}, {qx, qy, qz, qw}};
 }
 
+msg::TransformStamped make_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                                     const msg::Transform& T_parent_child) {
+  const msg::Pose pose = to_pose(T_parent_child);
+  return {{msg::to_time(stamp_ns), parent},
+          child,
+          {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
+}
+
 /// Covariance of a motion between two poses of known covariance, per second, in the camera frame.
 RowMajor6d twist_covariance(const OdometryPose& pose, const OdometryPose& previous, double gap_s) {
   const RowMajor6d sum = Eigen::Map<const RowMajor6d>(pose.result.covariance.data()) +
                          Eigen::Map<const RowMajor6d>(previous.result.covariance.data());
   const RowMajor6d turn = geometry::block_rotation(pose.T_odom_camera.linear().transpose());
   return turn * sum * turn.transpose() / (gap_s * gap_s);
+}
+
+RowMajor6d known_covariance(const FrameResult& result) {
+  if (!msg::has_pose(result.state) || !result.covariance.allFinite()) return kUnknown * RowMajor6d::Identity();
+  if (result.covariance.isZero(0)) return kByDefinition * RowMajor6d::Identity();
+  return result.covariance;
 }
 
 std::string text(double value) {
@@ -54,10 +70,7 @@ msg::TrackingResult make_result(const FrameResult& result) {
   message.seq = result.seq;
   message.stamp_ns = result.stamp_ns;
   message.T_world_camera = msg::to_message(result.T_world_camera);
-  constexpr double kUnknown = 1e6;  // m2 and rad2: receivers take no message with numbers that are none
-  const bool known = msg::has_pose(result.state) && result.covariance.allFinite();
-  Eigen::Map<RowMajor6d>(message.covariance.data()) =
-      known ? RowMajor6d(result.covariance) : RowMajor6d(kUnknown * RowMajor6d::Identity());
+  Eigen::Map<RowMajor6d>(message.covariance.data()) = known_covariance(result);
   message.event_count = result.event_count;
   message.state = result.state;
   message.inliers = result.inliers;
@@ -81,24 +94,19 @@ std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output) {
   return events;
 }
 
-std::string map_frame(const msg::TrackingResult& result, const FrameNames& names) {
-  return result.map_id == 0 ? names.map : names.map + "_" + std::to_string(result.map_id);
-}
-
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names) {
-  return {{msg::to_time(result.stamp_ns), map_frame(result, names)}, to_pose(result.T_world_camera)};
+  return {{msg::to_time(result.stamp_ns), names.map}, to_pose(result.T_world_camera)};
 }
 
 msg::TFMessage make_tf(const OdometryPose& odometry, const Eigen::Isometry3d& T_map_odom, const FrameNames& names) {
   const msg::TrackingResult& result = odometry.result;
-  const auto link = [&](const std::string& parent, const std::string& child, const msg::Transform& T) {
-    const msg::Pose pose = to_pose(T);
-    return msg::TransformStamped{{msg::to_time(result.stamp_ns), parent},
-                                 child,
-                                 {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
-  };
-  return {{link(map_frame(result, names), names.odom, msg::to_message(T_map_odom)),
-           link(names.odom, names.camera, result.T_world_camera)}};
+  return {{make_transform(result.stamp_ns, names.map, names.odom, msg::to_message(T_map_odom)),
+           make_transform(result.stamp_ns, names.odom, names.camera, result.T_world_camera)}};
+}
+
+msg::TransformStamped make_jump(const Eigen::Isometry3d& T_now_before, bool same_map, std::int64_t stamp_ns,
+                                const FrameNames& names) {
+  return make_transform(stamp_ns, names.map, same_map ? names.map : names.previous_map, msg::to_message(T_now_before));
 }
 
 OdometryPose to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom) {
@@ -119,12 +127,14 @@ msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<Odomet
   odometry.header = {msg::to_time(result.stamp_ns), names.odom};
   odometry.child_frame_id = names.camera;
   odometry.pose = {to_pose(result.T_world_camera), result.covariance};
+  Eigen::Map<RowMajor6d> variances(odometry.twist.covariance.data());
+  variances = kUnknown * RowMajor6d::Identity();
   if (!previous || previous->result.stamp_ns >= result.stamp_ns) return odometry;
   const double gap_s = static_cast<double>(msg::minus_ns(result.stamp_ns, previous->result.stamp_ns)) / kNsPerS;
   const Eigen::Isometry3d T_previous_camera = previous->T_odom_camera.inverse() * pose.T_odom_camera;
   const geometry::Vector6d twist = geometry::se3_log(T_previous_camera) / gap_s;
   odometry.twist.twist = {{twist[0], twist[1], twist[2]}, {twist[3], twist[4], twist[5]}};
-  Eigen::Map<RowMajor6d>(odometry.twist.covariance.data()) = twist_covariance(pose, *previous, gap_s);
+  variances = twist_covariance(pose, *previous, gap_s);
   return odometry;
 }
 

@@ -18,6 +18,7 @@ namespace rtd::slam {
 /// Names of the coordinate frames on the wire, docs/frames.md.
 struct FrameNames {
   std::string map, odom, camera;
+  std::string previous_map;  ///< where another map was `map` before
 };
 
 /// What the driver of the wheels says, as the core takes it.
@@ -29,9 +30,6 @@ msg::TrackingResult make_result(const FrameResult& result);
 /// One event for each change, in their order.
 std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output);
 
-/// Frame of the poses: `map`, or `map_N` while another map than the first is tracked and not merged.
-std::string map_frame(const msg::TrackingResult& result, const FrameNames& names);
-
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
 
 /// A result with pose and covariance in frame odom.
@@ -42,8 +40,12 @@ struct OdometryPose {
 OdometryPose to_odometry_frame(const msg::TrackingResult& result, const Eigen::Isometry3d& T_map_odom);
 /// map -> odom, which takes up the jumps when the map is corrected, and odom -> camera, which is smooth.
 msg::TFMessage make_tf(const OdometryPose& pose, const Eigen::Isometry3d& T_map_odom, const FrameNames& names);
+/// A step of map -> odom: takes coordinates in `map` from before the frame with this stamp to those since. Its child is
+/// `map` as it was: the same map, corrected, or another one.
+msg::TransformStamped make_jump(const Eigen::Isometry3d& T_now_before, bool same_map, std::int64_t stamp_ns,
+                                const FrameNames& names);
 /// Pose with covariance, and the twist in the camera frame: the motion since `previous` (earlier stamp) divided by the
-/// time; zero without it.
+/// time; zero without it, and its covariance huge.
 msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<OdometryPose>& previous,
                             const FrameNames& names);
 /// x y z and intensity (the static probability), all float32.

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/slam_publisher.hpp"
 
+#include <algorithm>
+#include <utility>
+
+#include "common/msg/camera_frame.hpp"
 #include "common/service/monotonic_clock.hpp"
 
 namespace rtd::slam {
@@ -14,9 +18,10 @@ std::optional<RobotBase> base_of(const BaseConfig& config, const bus::Bus& bus) 
 
 }  // namespace
 
-SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::function<std::vector<MapPoint>()> points)
+SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, MapPoints points)
     : config_(config),
-      names_{bus.frame(config.map_frame), bus.frame(config.odom_frame), bus.frame(config.camera_frame)},
+      names_{bus.frame(config.map_frame), bus.frame(config.odom_frame), bus.frame(msg::kCameraFrame),
+             bus.frame("previous_" + config.map_frame)},
       base_(base_of(config.base, bus)),
       robot_(bus.robot()),
       points_(std::move(points)),
@@ -25,6 +30,7 @@ SlamPublisher::SlamPublisher(const ServiceConfig& config, bus::Bus& bus, std::fu
       odometry_(bus.writer(bus::topics::kOdometry)),
       pose_(bus.writer(bus::topics::kPose)),
       tf_(bus.writer(bus::topics::kTf)),
+      map_jumps_(bus.writer(bus::topics::kMapJumps)),
       path_(bus.writer(bus::topics::kPath)),
       map_points_(bus.writer(bus::topics::kMapPoints)),
       diagnostics_(bus.writer(bus::topics::kDiagnostics)),
@@ -35,28 +41,57 @@ SlamPublisher::~SlamPublisher() {
   cloud_thread_.join();
 }
 
+void SlamPublisher::name_camera(const CameraTree::Camera& camera) {
+  if (names_.camera != camera.frame) names_.camera = camera.frame;
+  root_ = camera.root;
+}
+
 void SlamPublisher::publish(const SlamOutput& output, const msg::TrackingResult& result) {
+  std::optional<OdometryPose> smooth;
+  if (msg::has_pose(result.state)) {
+    smooth = to_odometry_frame(result, output.T_map_odom);
+    follow_world({output.T_map_odom, result.map_id}, result.stamp_ns);
+    publish_tf(*smooth, output.T_map_odom);
+  }
   for (const msg::KeyframeEvent& event : make_events(output)) keyframes_.write(event);
   tracking_.write(result);
   const bool measured = msg::is_measured(result.state);
   // From a predicted pose to a measured one the estimate may step: that is no velocity.
-  if (measured && previous_ && !msg::is_measured(previous_->result.state)) previous_.reset();
-  if (previous_ && previous_->result.map_id != result.map_id) previous_.reset();
-  if (!msg::has_pose(result.state)) {
-    previous_.reset();
-    return;
-  }
-  const OdometryPose smooth = to_odometry_frame(result, output.T_map_odom);
-  msg::Odometry odometry = make_odometry(smooth, previous_, names_);
-  msg::TFMessage tf = make_tf(smooth, output.T_map_odom, names_);
-  if (base_) {
-    move_to_base(odometry, *base_);
-    move_to_base(tf, *base_);
-  }
-  odometry_.write(odometry);
-  tf_.write(tf);
-  previous_ = smooth;
+  const bool steps = measured && previous_ && !msg::is_measured(previous_->result.state);
+  if (!smooth || steps || (previous_ && previous_->result.map_id != result.map_id)) previous_.reset();
+  if (smooth) publish_odometry(*smooth);
   if (measured) publish_pose(result);
+}
+
+void SlamPublisher::begin_map() {
+  another_map_ = true;
+  poses_.clear();
+  const std::lock_guard lock(cloud_mutex_);
+  ++cloud_.jumps;
+}
+
+/// Another map is `map` from now on, or the same was corrected.
+void SlamPublisher::follow_world(const World& world, std::int64_t stamp_ns) {
+  const std::optional<World> before = std::exchange(world_, world);
+  const bool same_map = !std::exchange(another_map_, false) && before && before->map == world.map;
+  if (!before || (same_map && before->T_map_odom.matrix() == world.T_map_odom.matrix())) return;
+  map_jumps_.write(make_jump(world.T_map_odom * before->T_map_odom.inverse(), same_map, stamp_ns, names_));
+  if (!same_map) poses_.clear();
+  const std::lock_guard lock(cloud_mutex_);
+  ++cloud_.jumps;
+}
+
+void SlamPublisher::publish_tf(const OdometryPose& smooth, const Eigen::Isometry3d& T_map_odom) {
+  msg::TFMessage tf = make_tf(smooth, T_map_odom, names_);
+  if (const std::optional<RobotBase>& joint = base_ ? base_ : root_) move_to_base(tf, *joint);
+  tf_.write(tf);
+}
+
+void SlamPublisher::publish_odometry(const OdometryPose& smooth) {
+  msg::Odometry odometry = make_odometry(smooth, previous_, names_);
+  if (base_) move_to_base(odometry, *base_);
+  odometry_.write(odometry);
+  previous_ = smooth;
 }
 
 /// All publishers share its topic.
@@ -69,8 +104,11 @@ void SlamPublisher::publish_pose(const msg::TrackingResult& result) {
   msg::PoseStamped pose = make_pose(result, names_);
   if (base_) move_to_base(pose, *base_);
   pose_.write(pose);
-  newest_stamp_ns_ = result.stamp_ns;
-  if (!poses_.empty() && poses_.back().header.frame_id != pose.header.frame_id) poses_.clear();  // one path, one frame
+  {
+    const std::lock_guard lock(cloud_mutex_);
+    cloud_.stamp_ns = result.stamp_ns;
+    cloud_.map = result.map_id;
+  }
   poses_.push_back(std::move(pose));
   while (poses_.size() > static_cast<std::size_t>(config_.path_length)) poses_.pop_front();
   publish_path();
@@ -83,14 +121,23 @@ void SlamPublisher::publish_path() {
   path_.write({poses_.back().header, {poses_.begin(), poses_.end()}});
 }
 
+SlamPublisher::CloudMoment SlamPublisher::cloud_moment() {
+  const std::lock_guard lock(cloud_mutex_);
+  return cloud_;
+}
+
 void SlamPublisher::publish_clouds() {
   constexpr int kRest = 20;  // times the work: a large map is published more rarely
-  std::chrono::nanoseconds pause = std::chrono::milliseconds(config_.map_period_ms);
+  const std::chrono::nanoseconds period = std::chrono::milliseconds(config_.map_period_ms);
+  std::chrono::nanoseconds pause = period;
   while (!ended_.wait_for(pause)) {
-    const std::int64_t stamp_ns = newest_stamp_ns_, start_ns = service::monotonic_ns();
-    if (stamp_ns >= 0) map_points_.write(make_cloud(points_(), stamp_ns, names_.map));
-    pause = std::max<std::chrono::nanoseconds>(std::chrono::milliseconds(config_.map_period_ms),
-                                               kRest * std::chrono::nanoseconds(service::monotonic_ns() - start_ns));
+    pause = period;
+    const CloudMoment moment = cloud_moment();
+    if (moment.stamp_ns < 0) continue;
+    const std::int64_t start_ns = service::monotonic_ns();
+    const msg::PointCloud2 cloud = make_cloud(points_(moment.map), moment.stamp_ns, names_.map);
+    if (cloud_moment().jumps == moment.jumps) map_points_.write(cloud);
+    pause = std::max(period, kRest * std::chrono::nanoseconds(service::monotonic_ns() - start_ns));
   }
 }
 

@@ -46,7 +46,8 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
     : config_(with_mount(config, runtime)),
       runtime_(runtime),
       slam_(core_config(config_), mapping_mode(runtime.pace), service::monotonic_ns, yield_to_tracking),
-      publisher_(config_, runtime.bus, [this] { return slam_.map_points(); }),
+      camera_tree_(config_, runtime),
+      publisher_(config_, runtime.bus, [this](MapId map) { return slam_.map_points(map); }),
       map_publisher_(
           runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config_.map_changes_period_ms)),
       arrivals_(runtime.pace == service::Pace::kRealtime
@@ -113,7 +114,7 @@ std::string SlamService::take_map(MapContents contents) {
   map_by_command_ = true;
   refused_map_.clear();
   slam_.load_map(std::move(contents));
-  publisher_.begin_path();
+  publisher_.begin_map();
   return {};
 }
 
@@ -121,7 +122,7 @@ void SlamService::forget_map() {
   map_cameras_.clear();
   refused_map_.clear();
   slam_.reset();
-  publisher_.begin_path();
+  publisher_.begin_map();
 }
 
 service::ExitCode SlamService::run() {
@@ -147,13 +148,19 @@ service::ExitCode SlamService::run() {
   return finish();
 }
 
-/// Every frame gets one result; a frame sent again because its result was lost gets the same result again.
+/// A frame sent again because its result was lost gets the same result again. One that newer ones have overtaken gets
+/// none: the camera takes theirs for it, too.
+bool SlamService::answer_again(const msg::FeatureFrame& frame) {
+  const msg::TrackingResult* const result = results_.find(frame.seq, frame.stamp_ns);
+  if (result == nullptr && !results_.left_behind(frame.seq, frame.stamp_ns)) return false;
+  ++counters_.duplicates;
+  if (result != nullptr) publisher_.repeat(*result);
+  return true;
+}
+
+/// Every frame gets one result.
 void SlamService::answer(const msg::FeatureFrame& frame) {
-  if (counters_.frames > 0 && frame.seq == last_result_.seq && frame.stamp_ns == last_result_.stamp_ns) {
-    ++counters_.duplicates;
-    publisher_.repeat(last_result_);
-    return;
-  }
+  if (answer_again(frame)) return;
   if (motion_) take_motion(frame);
   const msg::TrackingState previous = last_result_.state;
   const std::int64_t started_ns = service::monotonic_ns();
@@ -161,6 +168,8 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   last_result_ = make_result(output.result);
   last_result_.published_ns = frame.published_ns;
   last_result_.finished_ns = service::monotonic_ns();
+  results_.add() = last_result_;
+  publisher_.name_camera(camera_tree_.camera());
   publisher_.publish(output, last_result_);
   trace(started_ns);
   trust_ = trust_monitor_.add(last_result_, output.result.agreement);

@@ -11,8 +11,10 @@
 #include "common/inertial/motion_feed.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
+#include "common/service/recent_messages.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
+#include "services/slam/camera_tree.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "services/slam/map_file.hpp"
@@ -48,6 +50,7 @@ class SlamService {
   void forget_map();
   /// False when the camera is not that of the map the service was started with. One taken by command is given up.
   bool check_camera(const msg::FeatureFrame& frame);
+  bool answer_again(const msg::FeatureFrame& frame);
   void answer(const msg::FeatureFrame& frame);
   void take_motion(const msg::FeatureFrame& frame);
   void count_motion();
@@ -67,6 +70,7 @@ class SlamService {
   MapCameras map_cameras_;  ///< of the loaded map
   bool map_by_command_ = false;
   std::string refused_map_;  ///< why the map taken by command was given up, until the next one or a reset
+  CameraTree camera_tree_;
   SlamPublisher publisher_;
   MapPublisher map_publisher_;
   std::optional<inertial::MotionFeed> motion_;  ///< IMU and wheels
@@ -77,6 +81,7 @@ class SlamService {
   SlamCounters counters_;
   MapKeeper map_keeper_;  ///< ends before the system that it reads
   msg::TrackingResult last_result_{};
+  service::RecentMessages<msg::TrackingResult> results_;
   TrustMonitor trust_monitor_;
   PoseTrust trust_;  ///< of the last result
   std::string last_problem_;

@@ -62,17 +62,17 @@ std::string general(const BusOptions& options) {
                      element("MaxMessageSize", bytes(datagram)) + element("FragmentSize", bytes(datagram - overhead)));
 }
 
-/// As Fast DDS of ours does: on a network each process takes one of the ports that peers without a port are asked at.
-std::string discovery(const NetworkOptions& network) {
+/// As Fast DDS of ours does: each process takes one of the ports that peers without a port are asked at, and asks at
+/// those of loopback.
+std::string discovery(const NetworkOptions& network, DiscoveryPort port) {
   std::string text = element("SPDPInterval", "500 ms") + element("LeaseDuration", "5 s");
-  if (network.loopback_only && network.multicast && network.peers.empty()) return element("Discovery", text);
   std::string peers = R"(<Peer address="127.0.0.1"/>)";
   for (const std::string& peer : network.peers) {
     const HostAddress host = resolve_host(peer, "--peers");
     peers += "<Peer address=\"" + host.address + (host.port == 0 ? "" : ":" + std::to_string(host.port)) + "\"/>";
   }
-  text +=
-      element("ParticipantIndex", "auto") + element("MaxAutoParticipantIndex", std::to_string(kPeerParticipants - 1));
+  text += element("ParticipantIndex", port == DiscoveryPort::kOfPeers ? "auto" : "none") +
+          element("MaxAutoParticipantIndex", std::to_string(kPeerParticipants - 1));
   return element("Discovery", text + element("Peers", peers));
 }
 
@@ -95,8 +95,8 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
 
 }  // namespace
 
-std::string domain_config(const BusOptions& options, const HostLimits& limits) {
-  std::string text = general(options) + discovery(options.network) + internal(options, limits);
+std::string domain_config(const BusOptions& options, const HostLimits& limits, DiscoveryPort port) {
+  std::string text = general(options) + discovery(options.network, port) + internal(options, limits);
   // The trace of discovery goes to UnmatchedWatch; the file is only to be one that can be opened.
   if (options.security.enabled())
     text += element("Tracing", element("Category", "discovery") + element("OutputFile", "/dev/null"));

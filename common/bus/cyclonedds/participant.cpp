@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "common/bus/cyclonedds/domain_config.hpp"
+#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
 #include "common/security/keystore_layout.hpp"
 
@@ -85,10 +86,13 @@ std::mutex& domains_mutex() {
   return mutex;
 }
 
-std::shared_ptr<Domain> create_domain(const BusOptions& options, const std::string& config) {
+/// When all ports that peers ask are taken, multicast still finds us.
+std::shared_ptr<Domain> create_domain(const BusOptions& options, const HostLimits& limits, const std::string& config) {
   if (options.iceoryx) require_roudi();
   const LogCapture log;
-  const dds_entity_t handle = dds_create_domain(options.domain, config.c_str());
+  dds_entity_t handle = dds_create_domain(options.domain, config.c_str());
+  if (handle < 0 && !takes_participant_port(options) && free_participant_ports(options.domain) == 0)
+    handle = dds_create_domain(options.domain, domain_config(options, limits, DiscoveryPort::kAny).c_str());
   if (handle < 0) {
     throw BusError("Cyclone DDS refused to join domain " + std::to_string(options.domain) + " (" +
                    dds_strretcode(handle) + ")" + log.reason() + "; " + kMayBeRefused);
@@ -102,14 +106,15 @@ std::shared_ptr<Domain> create_domain(const BusOptions& options, const std::stri
 /// Throws BusError: refused, with Cyclone's reason, or already there with other settings.
 std::shared_ptr<Domain> join_domain(const BusOptions& options) {
   static std::map<std::uint32_t, std::weak_ptr<Domain>> domains;  // Cyclone's own table is per process, too
-  const std::string config = domain_config(options, read_host_limits());
+  const HostLimits limits = read_host_limits();
+  const std::string config = domain_config(options, limits);
   const std::lock_guard lock(domains_mutex());
   if (const auto known = domains[options.domain].lock()) {
     if (known->config == config) return known;
     throw BusError("this process is in domain " + std::to_string(options.domain) +
                    " with other network settings; Cyclone DDS allows one set of them for a domain and process");
   }
-  const auto domain = create_domain(options, config);
+  const auto domain = create_domain(options, limits, config);
   domains[options.domain] = domain;
   return domain;
 }

@@ -68,6 +68,11 @@ rtps::SampleIdentity to_identity(const CallId& id) {
   return identity;
 }
 
+/// RTPS 2.2, 9.3.1.5: a GUID begins with the vendor.
+bool is_of_cyclonedds(const rtps::GUID_t& guid) {
+  return guid.guidPrefix.value[0] == 0x01 && guid.guidPrefix.value[1] == 0x10;
+}
+
 class FastddsCalls : public CallEndpoint {
  public:
   FastddsCalls(std::shared_ptr<Participant> participant, const RawTopic& sent, const RawTopic& received, CallRole role,
@@ -85,32 +90,38 @@ class FastddsCalls : public CallEndpoint {
   std::optional<CallId> request(std::span<const std::byte> cdr) override {
     rtps::WriteParams params;
     params.related_sample_identity().writer_guid(reader_.guid());
-    const CallOutput output{cdr, params};
-    if (!writer_.write(&output)) return std::nullopt;
+    if (!write(cdr, params)) return std::nullopt;
     rtps::SampleIdentity sent = params.sample_identity();
     sent.writer_guid(reader_.guid());
     return to_call_id(sent);
   }
   bool reply(const CallId& id, std::span<const std::byte> cdr) override {
     rtps::WriteParams params;
+    if (is_prefixed(id)) return write(with_prefix(id, cdr), params);
     params.related_sample_identity(to_identity(id));
-    const CallOutput output{cdr, params};
-    return writer_.write(&output);
+    return write(cdr, params);
   }
   int matched_readers() const override { return writer_.matched(); }
   int matched_writers() const override { return reader_.matched(); }
 
  private:
+  bool write(std::span<const std::byte> cdr, rtps::WriteParams& params) {
+    const CallOutput output{cdr, params};
+    return writer_.write(&output);
+  }
   void receive(const CallSample& sample) const {
     const auto cdr = sample.bytes.view();
-    if (role_ == CallRole::kServer) {
+    if (role_ == CallRole::kServer && is_of_cyclonedds(sample.own.writer_guid())) {
+      if (const std::optional<PrefixedCall> call = split_prefix(cdr)) on_call_(call->id, call->cdr);
+    } else if (role_ == CallRole::kServer) {
       rtps::SampleIdentity asked = sample.own;
       if (sample.related.writer_guid() != rtps::GUID_t::unknown()) asked.writer_guid(sample.related.writer_guid());
-      return on_call_(to_call_id(asked), cdr);
+      on_call_(to_call_id(asked), cdr);
+    } else {
+      rtps::SampleIdentity answered = sample.related;
+      if (answered.writer_guid() == writer_.guid()) answered.writer_guid(reader_.guid());
+      if (answered.writer_guid() == reader_.guid()) on_call_(to_call_id(answered), cdr);
     }
-    rtps::SampleIdentity answered = sample.related;
-    if (answered.writer_guid() == writer_.guid()) answered.writer_guid(reader_.guid());
-    if (answered.writer_guid() == reader_.guid()) on_call_(to_call_id(answered), cdr);
   }
 
   const CallRole role_;
@@ -121,7 +132,8 @@ class FastddsCalls : public CallEndpoint {
 
 /// One end of a service as rmw_fastrtps has it: the identities travel beside the samples, in their inline QoS. A
 /// request is known by its number and by the GUID of the reader that waits for the reply, which the client announces as
-/// related identity; older clients (ROS 2 Foxy) announce none and mean their writer.
+/// related identity; older clients (ROS 2 Foxy) announce none and mean their writer. A server answers clients of
+/// rmw_cyclonedds too, as they ask: their GUIDs say whose they are.
 std::unique_ptr<CallEndpoint> create_calls(std::shared_ptr<Participant> participant, const CallTopics& topics,
                                            CallRole role, OnCall on_call) {
   return std::make_unique<FastddsCalls>(std::move(participant), sent_topic(topics, role), received_topic(topics, role),

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
+#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
@@ -65,6 +66,13 @@ class ScreeningTransport : public PassingTransport {
       : PassingTransport(descriptor), descriptor_(descriptor) {}
 
   transports::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+  /// A program of this host that uses the network announces the host's address there, and may receive by no multicast.
+  /// It listens at any address: where ours use loopback only, it is reached through that.
+  bool reach(const rtps::Locator_t& remote, rtps::Locator_t& result) const override {
+    if (!IsLocatorSupported(remote) || !is_own_address(rtps::IPLocator::toIPv4string(remote))) return false;
+    result = remote;
+    return rtps::IPLocator::setIPv4(result, kLoopback);
+  }
   void receive(transports::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     std::unique_lock one_at_a_time(mutex_);
@@ -116,22 +124,24 @@ std::shared_ptr<transports::UDPv4TransportDescriptor> udp_transport(const BusOpt
 }
 
 /// The first free discovery port of those that peers try: Fast DDS itself continues to the next while one is taken.
-/// It is not the participant's id that follows the process id (participant.cpp).
-void take_well_known_port(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
+/// It is not the participant's id that follows the process id (participant.cpp). When none is left, the one of that id
+/// does where multicast finds it.
+void take_discovery_port(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
+  if (!takes_participant_port(options) && free_participant_ports(options.domain) == 0) {
+    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress));
+    return;
+  }
   const std::uint32_t first_port = rtps::PortParameters().getUnicastPort(options.domain, 0);
   builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress, first_port));
   builtin.mutation_tries = kPeerParticipants - 1;
 }
 
-/// Multicast is always received: it costs nothing, and tools of this host that keep to loopback are found.
+/// Multicast is always received: it costs nothing, and tools of this host that keep to loopback are found. Loopback is
+/// always asked: ROS 2 programs that are restricted to this host use no multicast.
 void find_by_announcements(const BusOptions& options, rtps::BuiltinAttributes& builtin) {
   const NetworkOptions& network = options.network;
   builtin.metatrafficMulticastLocatorList.push_back(udp_locator(kMulticastGroup));
-  if (network.loopback_only && network.multicast) {
-    builtin.metatrafficUnicastLocatorList.push_back(udp_locator(kAnyAddress));
-    return;
-  }
-  take_well_known_port(options, builtin);
+  take_discovery_port(options, builtin);
   if (network.multicast) builtin.initialPeersList.push_back(udp_locator(kMulticastGroup));
   builtin.initialPeersList.push_back(udp_locator(kLoopback));
   for (const std::string& peer : network.peers) {

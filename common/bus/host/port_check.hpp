@@ -24,7 +24,8 @@ constexpr std::uint16_t participant_port(std::uint32_t domain, int id) {
   return static_cast<std::uint16_t>(discovery_port(domain) + 10 + 2 * id);
 }
 
-/// Whether a process with these options takes one of the ports that peers ask: of the ids below kPeerParticipants.
+/// Whether a process with these options is only found at one of the ports that peers ask, those of the ids below
+/// kPeerParticipants. Others take one while there is a free one.
 bool takes_participant_port(const BusOptions& options);
 /// How many of them are free; nothing is opened. `udp_table`: for tests.
 int free_participant_ports(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");

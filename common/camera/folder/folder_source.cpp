@@ -317,6 +317,16 @@ std::optional<std::int64_t> FolderSource::advance() {
   return list_.pairs[next_pair_++].color.stamp_ns;
 }
 
+/// Lists of an extract name images that it does not have.
+bool FolderSource::is_there() const {
+  const FilePair& pair = list_.pairs[next_pair_ - 1];
+  const auto has_content = [this](const std::string& file) {
+    std::error_code missing;
+    return std::filesystem::file_size(contents_.folder / file, missing) > 0 && !missing;
+  };
+  return has_content(pair.color.file) && has_content(pair.depth.file);
+}
+
 ImageRead FolderSource::read_depth_units(const std::string& file) const {
   ImageRead depth = read_depth(contents_.folder / file);
   if (depth.problem) return depth;

@@ -42,6 +42,7 @@ class FolderSource final : public PlayedSource {
 
   std::optional<std::int64_t> advance() override;
   std::optional<SourceFrame> decode() override;
+  bool is_there() const override;
 
   void read_pairs();
   FirstImages look_at_first_images() const;

@@ -165,6 +165,7 @@ void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   const RecordedMessage color = first_of(*recording_, topics_.color), depth = first_of(*recording_, topics_.depth);
   const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, float_step_);
   color_ = {topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, color_image.image.size(), {}};
+  info_.frame_id = place_named(color_.frame_id);
   depth_ = {topics_.depth, ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id, depth_image.image.size(), {}};
   for (const ImageRead* image : {&color_image, &depth_image}) {
     if (!image->remark.empty()) info_.remarks.push_back(image->remark);

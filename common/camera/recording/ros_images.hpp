@@ -8,6 +8,7 @@
 #include "common/camera/image_files.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/geometry/camera_model.hpp"
+#include "common/msg/camera_frame.hpp"
 #include "common/msg/ros.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 
@@ -49,7 +50,7 @@ bool has_float_depth(const RecordedMessage& message);
 /// where the message's floats are millimetres, although ROS has metres in floats. Throws as above.
 double float_step(const RecordedMessage& message, double float_unit_m);
 
-inline constexpr const char* kCameraFrame = "camera_color_optical_frame";  ///< docs/frames.md
+using msg::kCameraFrame;
 
 /// The camera_info message of a camera, ROS conventions.
 msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t stamp_ns,

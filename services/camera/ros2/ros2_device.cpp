@@ -167,6 +167,7 @@ std::optional<DeviceSetup> Ros2Device::setup_by(const FramePairer::Pair& first, 
   setup.camera = color_origin_.camera;
   setup.depth_camera = depth_camera_;
   setup.remarks = remarks_;
+  setup.frame_id = place_named(color_origin_.frame_id);
   setup.stamped_by_arrival = by_arrival_;
   return setup;
 }

@@ -7,6 +7,7 @@
 
 #include <utility>
 
+#include "common/service/camera_frame.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
@@ -136,8 +137,9 @@ void RobotLane::tick() {
 
 void RobotLane::publish(const Answer& answer) {
   if (!serving()) return;
-  detections_.write(to_message(answer.detections, answer.stamp_ns, bus_->frame(kCameraFrame)));
   const std::lock_guard lock(mutex_);
+  if (!heartbeat_) return;
+  detections_.write(to_message(answer.detections, answer.stamp_ns, service::camera_frame(*heartbeat_, *bus_)));
   stats_.add(answer.arrived_ns, service::monotonic_ns(), answer.batch);
   ++answered_;
 }

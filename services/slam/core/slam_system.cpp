@@ -46,6 +46,7 @@ void SlamSystem::reset() {
   depth_weight_ = DepthWeightEstimator();
   shutter_ = {};
   had_pose_ = false;
+  placed_ = true;
   map_ = 0;
   frames_.clear();
   unsettled_ = {};
@@ -61,6 +62,7 @@ void SlamSystem::reset() {
 void SlamSystem::load_map(MapContents contents) {
   reset();
   restore(std::move(contents));
+  placed_ = false;
 }
 
 void SlamSystem::restore(MapContents contents) {
@@ -211,7 +213,11 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   record(outcome.tracked);
   unsettled_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
-  if (!had_pose_ && outcome.map->map != map_) odometry_.correct(before, tracker_->T_world_camera());
+  if (!std::exchange(placed_, true)) {
+    odometry_.correct(config_.first_pose, tracker_->T_world_camera());  // which reset() has tied it to
+  } else if (!had_pose_ && outcome.map->map != map_) {
+    odometry_.correct(before, tracker_->T_world_camera());
+  }
   observe_sensor(*outcome.map, outcome);
   maybe_insert_keyframe(outcome);
   // This very frame may have closed a loop: its pose is then that in the corrected map.

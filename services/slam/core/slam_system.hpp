@@ -152,6 +152,7 @@ class SlamSystem {
   int frames_without_up_ = 0;
   bool begun_ = false;     ///< a map, ever
   bool had_pose_ = false;  ///< the last frame
+  bool placed_ = true;     ///< false: a map was taken over while running, and the camera not found in it yet
   MapId map_ = 0;          ///< component that it was tracked in
   KeyframeChangeQueue changes_;
   std::vector<FrameRecord> frames_;  ///< all of the last hours (thin_out())

@@ -76,6 +76,7 @@ TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2)
   check(kOdometry);
   check(kPose);
   check(kTf);
+  check(kMapJumps);
   check(kPath);
   check(kMapPoints);
   check(kDensePoints);

@@ -157,6 +157,7 @@ TEST_F(CameraServiceTest, lockstep_sends_every_frame_once_and_one_at_a_time) {
   EXPECT_EQ(metric("frames_in"), 40);
   EXPECT_EQ(metric("frames_published"), 40);
   EXPECT_EQ(metric("resends"), 0);
+  EXPECT_EQ(metric("frame_id.camera_color_optical_frame"), 1) << "other services name the frame of its images by it";
   EXPECT_EQ(last_status().state, msg::ServiceState::kFinished);
 }
 

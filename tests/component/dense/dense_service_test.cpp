@@ -42,7 +42,7 @@ class DenseServiceTest : public ServiceFixture<DenseService> {
         [&](const auto& all) { return !all.empty() && metric(*all.back(), name).value_or(-1) >= value; });
   }
   /// One frame with the person in it, its mask (when there is a filter) and its pose.
-  void send(std::uint64_t seq) {
+  void send(std::uint64_t seq, std::uint32_t map_id = 0) {
     const vision::RgbdImage image = scene_.render(kPerson);
     const auto frame = std::make_unique<msg::RgbdFrame>();
     *frame = {};
@@ -61,6 +61,7 @@ class DenseServiceTest : public ServiceFixture<DenseService> {
     result.seq = seq;
     result.stamp_ns = frame->stamp_ns;
     result.state = msg::TrackingState::kOk;
+    result.map_id = map_id;
     result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
     results_.write(result);
   }
@@ -141,6 +142,31 @@ TEST_F(DenseServiceTest, publishes_a_floor_plan_when_it_changes_and_writes_maps_
   for (const char* name : {"map.pgm", "map.yaml", "map.bt"}) {
     EXPECT_GT(std::filesystem::file_size(folder_ / name), 50U) << name;
   }
+}
+
+TEST_F(DenseServiceTest, shows_nothing_while_the_camera_is_in_another_map) {
+  Inbox<msg::PointCloud2> clouds;
+  Inbox<msg::OccupancyGrid> plans;
+  receive(bus::topics::kDensePoints, clouds);
+  receive(bus::topics::kOccupancyGrid, plans);
+  config_.publish_period_ms = config_.grid.publish_period_ms = 100;
+  config_.grid.core.find_floor = false;
+  config_.grid.core.floor_m = -1;
+  with_filter();
+  start();
+  send_and_wait(4);
+  const auto free = [](const auto& all) { return std::ranges::count(all.back()->data, std::int8_t{0}); };
+  const auto shown = [&](bool anything) {
+    return clouds.wait([=](const auto& all) { return !all.empty() && (all.back()->width > 0) == anything; }) &&
+           plans.wait([=](const auto& all) { return !all.empty() && (free(all) > 0) == anything; });
+  };
+  ASSERT_TRUE(shown(true));
+  const std::size_t cells = plans.all().back()->data.size();
+  send(4, 1);
+  ASSERT_TRUE(shown(false));
+  EXPECT_EQ(std::ranges::count(plans.all().back()->data, std::int8_t{-1}), cells) << "the plan is taken back";
+  send(5, 0);
+  EXPECT_TRUE(shown(true)) << "both maps are one now";
 }
 
 TEST_F(DenseServiceTest, fails_when_a_map_for_navigation_cannot_be_written) {

@@ -296,6 +296,17 @@ TEST_F(FilterServiceTest, gives_a_repeated_frame_the_same_features) {
   EXPECT_EQ(std::memcmp(answers_.at(0).get(), answers_.at(2).get(), sizeof(msg::FeatureFrame)), 0);
 }
 
+TEST_F(FilterServiceTest, frames_in_flight_that_come_again_are_not_taken_for_time_that_goes_back) {
+  start(service::Pace::kAsap, false);
+  for (const std::uint64_t seq : {0U, 1U, 3U, 4U}) send_frame(seq);
+  ASSERT_TRUE(answers_.wait_count(4));
+  for (const std::uint64_t seq : {2U, 3U, 4U, 5U}) send_frame(seq);
+  ASSERT_TRUE(answers_.wait_count(7));
+  EXPECT_EQ(std::memcmp(answers_.at(2).get(), answers_.at(4).get(), sizeof(msg::FeatureFrame)), 0);
+  EXPECT_EQ(std::memcmp(answers_.at(3).get(), answers_.at(5).get(), sizeof(msg::FeatureFrame)), 0);
+  EXPECT_EQ(answers_.at(6)->seq, 5U) << "the late frame 2 is left out";
+}
+
 TEST_F(FilterServiceTest, a_frame_of_impossible_size_is_refused_and_counted) {
   start(service::Pace::kLockstep, false);
   *frame_ = {};

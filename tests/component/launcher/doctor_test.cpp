@@ -112,7 +112,7 @@ TEST_F(DoctorTest, ports_in_use_are_named) {
   for (int id = 0; id < bus::kPeerParticipants; ++id)
     others.push_back(std::make_unique<Port>(bus::participant_port(domain(), id)));
   EXPECT_EQ(doctor({"--profile", "wifi"}), 1);
-  EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: 0 of 16 from UDP"));
+  EXPECT_THAT(rtd_.output(), HasSubstr("FAIL ports: 0 of 32 from UDP"));
 }
 
 TEST_F(DoctorTest, the_engines_of_the_detector_are_named) {

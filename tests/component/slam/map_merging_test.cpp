@@ -6,27 +6,19 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "tests/support/feature_world.hpp"
+#include "tests/support/two_places.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using msg::TrackingState;
-using test_support::FeatureWorld;
+constexpr double kStep_m = 0.05, kFarEnd_m = -3;
 
-constexpr double kHallX_m = 7, kStep_m = 0.05, kFarEnd_m = -3;
-
-/// Two places side by side, so that a camera on the way sees both.
 class TwoPlaces : public ::testing::Test {
  protected:
   FrameResult look_from(double x_m) {
     T_world_camera_.translation().x() = x_m;
-    auto frame = desk_.view(next_, T_world_camera_);
-    const auto hall = hall_.view(next_, Eigen::Translation3d(-kHallX_m, 0, 0) * T_world_camera_);
-    for (std::uint32_t i = 0; i < hall->count && frame->count < msg::kMaxFeatures; ++i) {
-      frame->features[frame->count++] = hall->features[i];
-    }
-    return show(*frame);
+    return show(*places_.view(next_, T_world_camera_));
   }
   FrameResult look_at_nothing() { return show(*test_support::make_empty_view(next_)); }
   FrameResult show(const msg::FeatureFrame& frame) {
@@ -38,7 +30,7 @@ class TwoPlaces : public ::testing::Test {
   }
 
  private:
-  FeatureWorld desk_ = FeatureWorld::noisy(1), hall_ = FeatureWorld::noisy(2);
+  test_support::TwoPlaces places_;
   SlamSystem slam_{{}, MappingMode::kSynchronous, [] { return std::int64_t{0}; }};
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   std::uint64_t next_ = 0;
@@ -59,7 +51,7 @@ TEST_F(TwoPlaces, become_one_map_when_the_lost_camera_walks_back) {
   walk_to(kFarEnd_m, 1);
   for (int i = 0; i < 60; ++i) ASSERT_NE(look_at_nothing().state, TrackingState::kOk);
 
-  x_m = kHallX_m + 2;  // nothing of the desk is seen from here
+  x_m = test_support::TwoPlaces::kHallX_m + 2;  // nothing of the desk is seen from here
   FrameResult result;
   for (int i = 0; i < 120 && result.state != TrackingState::kOk; ++i) result = look_from(x_m);
   ASSERT_EQ(result.state, TrackingState::kOk) << "no new map in four seconds";

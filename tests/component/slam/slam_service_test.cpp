@@ -91,6 +91,37 @@ TEST_F(SlamServiceTest, publishes_pose_odometry_and_tf_for_every_frame) {
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
+msg::TransformStamped transform(const char* parent, const char* child, const msg::RosTransform& T) {
+  return {{{}, parent}, child, T};
+}
+
+TEST_F(SlamServiceTest, names_the_camera_as_its_images_do_and_joins_the_tree_of_its_driver) {
+  bus::Writer<msg::TFMessage> driver = bus_->writer(bus::topics::kTfStatic);
+  start(service::Pace::kLockstep);
+  say("camera", msg::ServiceState::kReady, {{"frame_id.astra_rgb_optical_frame", 1}});
+  const auto last_link = [&](std::size_t count) {
+    EXPECT_TRUE(tf_.wait_count(count));
+    return tf_.all().back()->transforms.back();
+  };
+  std::size_t frames = 0;
+  do {
+    step(frames++);
+  } while (frames < 100 && last_link(frames).child_frame_id == "camera_color_optical_frame");
+  const msg::TransformStamped alone = last_link(frames);
+  EXPECT_EQ(alone.header.frame_id + " " + alone.child_frame_id, "odom astra_rgb_optical_frame");
+  driver.write({{transform("astra_link", "astra_rgb_frame", {{0.1, 0, 0}, {}}),
+                 transform("astra_rgb_frame", "astra_rgb_optical_frame", {{}, {-0.5, 0.5, -0.5, 0.5}})}});
+  while (frames < 200 && last_link(frames).child_frame_id != "astra_link") step(frames++);
+  const msg::TransformStamped joined = last_link(frames);
+  ASSERT_EQ(joined.child_frame_id, "astra_link") << "the optical frame has its parent already";
+  EXPECT_EQ(tf_.all().back()->transforms.size(), 2U);
+  // The camera looks along z of odom, so the housing is 0.1 m behind it.
+  const double camera_z_m = FeatureWorld::T_world_camera(frames - 1).translation().z();
+  EXPECT_NEAR(joined.transform.translation.z, camera_z_m - 0.1, 0.02);
+  ASSERT_TRUE(odometry_.wait_count(frames));
+  EXPECT_EQ(odometry_.all().back()->child_frame_id, "astra_rgb_optical_frame") << "whose pose it is";
+}
+
 TEST_F(SlamServiceTest, publishes_poses_of_the_robot_when_it_knows_where_the_camera_is) {
   config_.base.frame = "base_link";
   config_.base.camera = "0.2,0,0.5,-0.5,0.5,-0.5,0.5";
@@ -112,10 +143,6 @@ TEST_F(SlamServiceTest, publishes_poses_of_the_robot_when_it_knows_where_the_cam
   ASSERT_EQ(tf.size(), 3U);
   EXPECT_EQ(tf[1].header.frame_id + tf[1].child_frame_id, "odombase_link");
   EXPECT_EQ(tf[2].header.frame_id + tf[2].child_frame_id, "base_linkcamera_color_optical_frame");
-}
-
-msg::TransformStamped transform(const char* parent, const char* child, const msg::RosTransform& T) {
-  return {{{}, parent}, child, T};
 }
 
 TEST_F(SlamServiceTest, takes_the_mount_of_the_camera_from_the_robots_description) {
@@ -190,6 +217,31 @@ TEST_F(SlamServiceTest, repeats_the_result_of_a_repeated_frame) {
   EXPECT_EQ(std::memcmp(results[2].get(), results[3].get(), sizeof(msg::TrackingResult)), 0);
   step(3);
   EXPECT_EQ(results_.all().back()->state, msg::TrackingState::kOk);
+}
+
+/// A camera sends all frames in flight again, oldest first, when a busy computer answers late.
+TEST_F(SlamServiceTest, frames_that_come_late_or_again_publish_no_pose_of_the_past) {
+  start(service::Pace::kAsap);
+  for (const std::uint64_t seq : {0U, 1U, 2U, 4U, 5U}) step(seq);
+  for (const std::uint64_t seq : {4U, 5U}) step(seq);  // answered, but the answers were late
+  ASSERT_TRUE(send(3));                                // lost on its way the first time
+  step(6);
+  const auto results = results_.all();
+  ASSERT_THAT(results, SizeIs(8)) << "frame 3 has been answered by 4";
+  EXPECT_EQ(std::memcmp(results[3].get(), results[5].get(), sizeof(msg::TrackingResult)), 0);
+  EXPECT_EQ(results.back()->state, msg::TrackingState::kOk);
+  ASSERT_TRUE(tf_.wait_count(6));
+  ASSERT_TRUE(odometry_.wait_count(6));
+  const auto tf = tf_.all();
+  const auto odometry = odometry_.all();
+  ASSERT_THAT(tf, SizeIs(6)) << "each stamp once";
+  ASSERT_THAT(odometry, SizeIs(6));
+  for (std::size_t i = 0; i < 6; ++i) {
+    const std::int64_t stamp_ns = msg::to_ns(odometry[i]->header.stamp);
+    EXPECT_EQ(msg::to_ns(tf[i]->transforms[0].header.stamp), stamp_ns);
+    EXPECT_GT(stamp_ns, i == 0 ? 0 : msg::to_ns(odometry[i - 1]->header.stamp));
+    EXPECT_GT(odometry[i]->pose.covariance[0], 0) << "also of the first pose of a map";
+  }
 }
 
 TEST_F(SlamServiceTest, publishes_map_path_and_diagnostics) {

@@ -38,6 +38,7 @@ void for_each_topic(Visitor visit) {
   visit(kPose);
   visit(kTf);
   visit(kTfStatic);
+  visit(kMapJumps);
   visit(kPath);
   visit(kMapPoints);
   visit(kDensePoints);

@@ -131,6 +131,14 @@ TEST(PrefixedCalls, have_the_bytes_of_rmw_cyclonedds) {
   EXPECT_EQ(call->cdr, bytes({0, 1, 0, 0, 9}));
 }
 
+TEST(PrefixedCalls, are_distinguished_from_those_of_an_endpoint) {
+  CallId number, guid;
+  number.client = {1, 0x10, 3, 4, 5, 6, 7, 8};
+  guid.client = {1, 0x0f, 3, 4, 5, 6, 7, 8, 0, 0, 0, 0, 0, 0, 1, 4};
+  EXPECT_TRUE(is_prefixed(number));
+  EXPECT_FALSE(is_prefixed(guid));
+}
+
 TEST(PrefixedCalls, of_a_big_endian_client_get_our_byte_order) {
   const auto call = split_prefix(bytes({0, 0, 0, 0, 8, 7, 6, 5, 4, 3, 2, 1, 0, 0, 0, 0, 0, 0, 1, 2, 9}));
   ASSERT_TRUE(call);

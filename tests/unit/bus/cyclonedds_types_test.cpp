@@ -48,7 +48,8 @@ const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame
                                                     &rtd_msgs_msg_dds__Movers__desc,
                                                     &vision_msgs_msg_dds__Detection3DArray__desc,
                                                     &visualization_msgs_msg_dds__MarkerArray__desc,
-                                                    &nav_msgs_msg_dds__OccupancyGrid__desc};
+                                                    &nav_msgs_msg_dds__OccupancyGrid__desc,
+                                                    &geometry_msgs_msg_dds__TransformStamped__desc};
 
 /// A participant that no other process sees.
 class LocalDomain {

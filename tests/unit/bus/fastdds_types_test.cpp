@@ -50,6 +50,7 @@ using Pairs = testing::Types<
     Pair<msg::Odometry, nav_msgs::msg::dds_::Odometry_PubSubType>,
     Pair<msg::PoseStamped, geometry_msgs::msg::dds_::PoseStamped_PubSubType>,
     Pair<msg::TFMessage, tf2_msgs::msg::dds_::TFMessage_PubSubType>,
+    Pair<msg::TransformStamped, geometry_msgs::msg::dds_::TransformStamped_PubSubType>,
     Pair<msg::Path, nav_msgs::msg::dds_::Path_PubSubType>,
     Pair<msg::OccupancyGrid, nav_msgs::msg::dds_::OccupancyGrid_PubSubType>,
     Pair<msg::PointCloud2, sensor_msgs::msg::dds_::PointCloud2_PubSubType>,

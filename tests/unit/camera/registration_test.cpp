@@ -88,6 +88,7 @@ TEST(Registration, of_an_mcap_file_with_the_info_of_depth_elsewhere) {
   const auto frames = play(uri + "&depth_info=/elsewhere");
   ASSERT_THAT(frames, SizeIs(1));
   cameras.expect_registered(frames[0].image);
+  EXPECT_EQ(make_source(uri + "&depth_info=/elsewhere")->info().frame_id, cameras.color_frame);
 }
 
 /// As the RealSense SDK records: every image in frame "0", transforms from a reference stream to each stream.

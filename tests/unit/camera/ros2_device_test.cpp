@@ -7,6 +7,7 @@
 #include <deque>
 #include <limits>
 #include <set>
+#include <tuple>
 
 #include "services/camera/core/live/device_source.hpp"
 #include "tests/unit/camera/image_bag.hpp"
@@ -256,6 +257,19 @@ TEST_F(Ros2DeviceTest, reports_stamps_that_do_not_pair) {
   ASSERT_FALSE(reported_.empty());
   EXPECT_THAT(reported_.front(),
               AllOf(HasSubstr("no pair"), HasSubstr(" ms apart, allowed are 20"), HasSubstr("tolerance_ms")));
+}
+
+TEST_F(Ros2DeviceTest, knows_the_frame_as_the_driver_names_it) {
+  info();
+  for (const auto& [topic, pixels, encoding] :
+       {std::tuple("/c", ImageBag::color(), "bgr8"), std::tuple("/d", ImageBag::depth(), "16UC1")}) {
+    msg::Image image = ImageBag::image(pixels, encoding, 1.0);
+    image.header.frame_id = "/astra_rgb_optical_frame";
+    add(topic, "sensor_msgs/Image", image);
+  }
+  DeviceSource played = source();
+  ASSERT_TRUE(played.open());
+  EXPECT_EQ(played.info().frame_id, "astra_rgb_optical_frame") << "tf2 has no slash in front";
 }
 
 TEST_F(Ros2DeviceTest, reports_a_pause_and_its_end) {

@@ -73,6 +73,19 @@ TEST(TumSource, passes_over_old_frames_which_keep_their_seq) {
   test::expect_passes_over_two_of_three(folder.uri());
 }
 
+TEST(TumSource, images_that_only_the_lists_have_are_no_frames_that_were_passed_over) {
+  const SequenceFolder folder;
+  folder.three_frames();
+  std::filesystem::remove(folder.path() / "rgb" / "1.1.png");
+  const auto source = make_source(folder.uri());
+  EXPECT_EQ(source->pass_over(1'150'000'000), 1U) << "as many as next() would have given";
+  const auto frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->image.stamp_ns, 1'200'000'000);
+  EXPECT_EQ(frame->image.seq, 1U);
+  EXPECT_EQ(source->counters().of(SkipReason::kColorUnreadable), 1U);
+}
+
 TEST(TumSource, reads_jpeg_colour) {
   const SequenceFolder folder;
   folder.write("calibration.yaml", SequenceFolder::calibration());

@@ -124,6 +124,11 @@ TEST_F(FrameJoinerTest, leaves_out_frames_of_another_map) {
   joiner_.put(result);
   EXPECT_EQ(next(), -1);
   EXPECT_EQ(joiner_.counters().not_tracked, 1U);
+  EXPECT_TRUE(joiner_.elsewhere());
+  pose(1, 0, msg::TrackingState::kLost);
+  EXPECT_TRUE(joiner_.elsewhere()) << "a lost camera is where it was";
+  pose(2);
+  EXPECT_FALSE(joiner_.elsewhere());
 }
 
 TEST_F(FrameJoinerTest, keeps_the_newest_images_when_none_is_taken) {

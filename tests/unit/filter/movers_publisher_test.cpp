@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "common/bus/bus_factory.hpp"
+#include "tests/support/inbox.hpp"
+
 namespace rtd::filter {
 namespace {
 
@@ -72,6 +75,30 @@ TEST(MoverMarkers, are_a_box_an_arrow_and_a_name_each) {
   EXPECT_EQ(name.text, "person 7  1.1 m/s");
   EXPECT_LT(markers.markers[3].color.a, box.color.a) << "a hidden one is pale";
   for (const msg::Marker& marker : markers.markers) EXPECT_GT(marker.lifetime.nanosec, 0U) << "vanishes by itself";
+}
+
+TEST(MoversPublisher, follows_the_camera_into_another_map) {
+  bus::BusOptions options;
+  options.vendor = "inprocess";
+  const auto bus = bus::connect(options);
+  test_support::Inbox<msg::Detection3DArray> boxes;
+  test_support::Inbox<msg::Movers> own;
+  const auto box_reader = bus->reader<msg::Detection3DArray>(bus::topics::kMoverBoxes, [&](auto m) { boxes.take(m); });
+  const auto own_reader = bus->reader<msg::Movers>(bus::topics::kMovers, [&](auto m) { own.take(m); });
+  MoversPublisher publisher(*bus, "map");
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    publisher.add(seq, kStampNs + static_cast<std::int64_t>(seq), {});
+    msg::TrackingResult result{};
+    result.seq = seq;
+    result.state = msg::TrackingState::kOk;
+    result.map_id = seq == 1 ? 1 : 0;
+    result.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+    publisher.on_result(result);
+  }
+  ASSERT_TRUE(boxes.wait_count(3));
+  for (const auto& message : boxes.all()) EXPECT_EQ(message->header.frame_id, "map");
+  ASSERT_TRUE(own.wait_count(2)) << "a type without a frame is of the first map";
+  EXPECT_EQ(own.all().back()->seq, 2U);
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ constexpr Published kPublished[] = {
     {"nav_msgs::msg::dds_::Path_", "1957a5bb3cee5da65c4e52e52b65a93df227efce4c20f8458b36e73066ca334b"},
     {"nav_msgs::msg::dds_::MapMetaData_", "2772d4b2000ef2b35dbaeb80fd3946c1369f817fb4f75677d916d27c17d763c8"},
     {"nav_msgs::msg::dds_::OccupancyGrid_", "8d348150c12913a31ee0ec170fbf25089e4745d17035792a1ba94d6f0bc0cfc7"},
+    {"geometry_msgs::msg::dds_::TransformStamped_", "0a241f87d04668d94099cbb5ba11691d5ad32c2f29682e4eb5653424bd275206"},
     {"tf2_msgs::msg::dds_::TFMessage_", "e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087"},
     {"sensor_msgs::msg::dds_::Image_", "d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47"},
     {"sensor_msgs::msg::dds_::CompressedImage_", "15640771531571185e2efc8a100baf923961a4d15d5569652e6cb6691e8e371a"},

@@ -94,7 +94,10 @@ TEST_F(DdsEnvironment, profiles_of_the_other_vendor_do_not_matter) {
 
 TEST_F(DdsEnvironment, a_range_that_differs_is_named) {
   EXPECT_TRUE(follow("ROS_LOCALHOST_ONLY", "1").followed);
+  EXPECT_THAT(follow("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET").text, HasSubstr("--profile lan or wifi uses it, too"));
+  EXPECT_THAT(follow("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF").text, HasSubstr("find no other one, rtd neither"));
   options_.network.loopback_only = false;
+  EXPECT_TRUE(follow("ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET").followed);
   EXPECT_THAT(follow("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST").text, HasSubstr("rtd uses the network"));
 }
 

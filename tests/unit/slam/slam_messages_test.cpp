@@ -20,7 +20,7 @@ using geometry::Vector6d;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-const FrameNames kNames{"map", "odom", "camera"};
+const FrameNames kNames{"map", "odom", "camera", "previous_map"};
 
 msg::TrackingResult result_at(std::int64_t stamp_ns, const Eigen::Isometry3d& T_world_camera) {
   msg::TrackingResult result{};
@@ -83,6 +83,7 @@ TEST(Odometry, twist_is_the_motion_per_second_in_the_camera_frame) {
 TEST(Odometry, has_no_twist_without_an_earlier_pose) {
   const auto pose = odometry_at(5, Eigen::Isometry3d::Identity());
   EXPECT_EQ(make_odometry(pose, std::nullopt, kNames).twist.twist.linear.x, 0);
+  EXPECT_EQ(make_odometry(pose, std::nullopt, kNames).twist.covariance[35], 1e6) << "nothing is known about it";
   EXPECT_EQ(make_odometry(pose, odometry_at(5, geometry::se3_exp(Vector6d::Ones())), kNames).twist.twist.linear.x, 0);
 }
 
@@ -149,8 +150,16 @@ TEST(TrackingResult, without_a_pose_has_a_huge_covariance) {
   lost.state = msg::TrackingState::kLost;
   EXPECT_EQ(make_result(lost).covariance[0], 1e6);
   EXPECT_EQ(make_result(lost).covariance[35], 1e6);
-  lost.state = msg::TrackingState::kOk;
-  EXPECT_EQ(make_result(lost).covariance[0], 0);
+}
+
+TEST(TrackingResult, that_begins_a_map_has_a_small_covariance_and_never_zeros) {
+  FrameResult first;
+  first.state = msg::TrackingState::kOk;
+  const msg::TrackingResult result = make_result(first);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_GT(result.covariance[7 * i], 0) << "robot_localization refuses zeros";
+    EXPECT_LT(result.covariance[7 * i], 1e-6);
+  }
 }
 
 TEST(Config, refuses_unknown_keys_and_values_out_of_range) {

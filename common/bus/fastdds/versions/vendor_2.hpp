@@ -144,6 +144,11 @@ class PassingTransport : public transports::ChainingTransport {
             rtps::LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override {
     return sender->send(data, size, begin, end, timeout);
   }
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result) const override {
+    return ChainingTransport::transform_remote_locator(remote, result) || reach(remote, result);
+  }
+  /// By which address to send to one that the transport behind does not reach.
+  virtual bool reach(const rtps::Locator_t& /*remote*/, rtps::Locator_t& /*result*/) const { return false; }
 };
 
 /// Heartbeats of a writer, and how soon it repairs.

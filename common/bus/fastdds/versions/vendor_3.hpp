@@ -114,6 +114,16 @@ class PassingTransport : public transports::ChainingTransport {
             const std::chrono::steady_clock::time_point& timeout) override {
     return sender->send(buffers, bytes, begin, end, timeout);
   }
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result) const override {
+    return ChainingTransport::transform_remote_locator(remote, result) || reach(remote, result);
+  }
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result, bool allowed_remotely,
+                                bool allowed_here) const override {
+    return ChainingTransport::transform_remote_locator(remote, result, allowed_remotely, allowed_here) ||
+           reach(remote, result);
+  }
+  /// By which address to send to one that the transport behind does not reach.
+  virtual bool reach(const rtps::Locator_t& /*remote*/, rtps::Locator_t& /*result*/) const { return false; }
 };
 
 /// Heartbeats of a writer, and how soon it repairs.

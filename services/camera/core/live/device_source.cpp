@@ -170,6 +170,7 @@ void DeviceSource::calibrate(const DeviceSetup& setup) {
 }
 
 void DeviceSource::adopt(const DeviceSetup& setup) {
+  info_.frame_id = setup.frame_id;
   if (options_.uri.calibration_file.empty()) {
     info_.camera = *setup.camera;
     info_.depth_scale_m = setup.depth_scale_m;

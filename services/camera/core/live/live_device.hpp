@@ -55,6 +55,7 @@ struct DeviceSetup {
   std::optional<DepthCamera> depth_camera;  ///< empty when depth is registered to colour
   std::vector<std::string> remarks = {};    ///< what is wrong with the images although they can be used
   bool stamped_by_arrival = false;          ///< stamps are those of DeviceClock: the driver gives none
+  std::string frame_id = {};                ///< as SourceInfo::frame_id
 };
 
 /// An image as the device gives it, not yet decoded.

@@ -27,7 +27,8 @@ constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
 bool counts_losses(const std::string& metric) {
-  return std::ranges::any_of(kLossNames, [&](const char* name) { return metric.find(name) != std::string::npos; });
+  return !metric.starts_with(metric::kFrameIdPrefix) &&
+         std::ranges::any_of(kLossNames, [&](const char* name) { return metric.find(name) != std::string::npos; });
 }
 
 /// "frames_late" of camera -> "camera.late".
