@@ -39,7 +39,7 @@ struct ServiceConfig {
   int asap_window = 3;
   int resend_after_ms = 2000;
   double result_timeout_s = 1e-3 * service::kEveryFramePatience.result_ms;
-  double start_timeout_s = 30;
+  double start_timeout_s = 45;  ///< a large map takes slam some of it
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;

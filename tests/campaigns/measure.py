@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the clips of docs/results.md several times and prints tables for that page.
+"""Runs the clips of docs/results.md several times and prints their accuracy; speed.py measures what they cost.
 
 Usage: tests/campaigns/measure.py [--runs 5] [--rtd build/release/bin/rtd] [--data DIR] [--only NAME ...]
 
@@ -20,20 +20,11 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CLIPS = ("fr1_xyz", "walk_xyz", "walk_rpy", "walk_box")
 
-# name: (arguments of `rtd run`, kind of table)
-CASES = {
-    **{f"{clip} {mode}": (f"--source tum:{{data}}/{clip} --pace lockstep --filter {mode}", "accuracy")
-       for mode in ("rtd", "off", "semantic", "geometry") for clip in CLIPS},
-    "realtime walk_xyz": ("--source tum:{data}/walk_xyz --pace realtime --filter rtd", "speed"),
-    "realtime fr1_xyz": ("--source tum:{data}/fr1_xyz --pace realtime --filter rtd", "speed"),
-    "asap fr1_xyz": ("--source tum:{data}/fr1_xyz --pace asap --filter rtd", "speed"),
-    "asap fr1_xyz geometry": ("--source tum:{data}/fr1_xyz --pace asap --filter geometry --detector off", "speed"),
-}
+# name: arguments of `rtd run`
+CASES = {f"{clip} {mode}": f"--source tum:{{data}}/{clip} --pace lockstep --filter {mode}"
+         for mode in ("rtd", "off", "semantic", "geometry") for clip in CLIPS}
 
-HEADS = {
-    "accuracy": "| run | ATE RMSE m | online ATE m | RPE m/s | coverage | peak RSS MB | bytes equal |\n|---|---|---|---|---|---|---|",
-    "speed": "| run | frames/s | latency p50 ms | p99 ms | without pose % | ATE RMSE m |\n|---|---|---|---|---|---|",
-}
+HEAD = "| run | ATE RMSE m | online ATE m | RPE m/s | coverage | peak RSS MB | bytes equal |\n|---|---|---|---|---|---|---|"
 
 
 def run_once(rtd: str, arguments: str, out: pathlib.Path, domain: int) -> dict:
@@ -67,17 +58,6 @@ def accuracy_row(name: str, reports: list) -> str:
     ])
 
 
-def speed_row(name: str, reports: list) -> str:
-    return " | ".join([
-        f"| {name}",
-        spread(reports, lambda r: r["frames_per_s"], 1),
-        spread(reports, lambda r: r["latency_ms"]["p50"], 1),
-        spread(reports, lambda r: r["latency_ms"]["p99"], 1),
-        spread(reports, lambda r: 100 * (1 - r["frames_tracked"] / max(1, r["frames_in"])), 2),
-        f"{spread(reports, lambda r: r['ate_rmse_m'], 4)} |",
-    ])
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5)
@@ -87,19 +67,15 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", default=[], choices=list(CASES), help="cases to run (default: all)")
     options = parser.parse_args()
 
-    kind = None
+    print(f"Median (min..max) of {options.runs} runs\n\n{HEAD}")
     with tempfile.TemporaryDirectory(prefix="rtd-measure-") as folder:
         for name in options.only or CASES:
-            arguments, figures = CASES[name]
             reports = []
             for run in range(options.runs):
                 print(f"  {name}: run {run + 1} of {options.runs}", file=sys.stderr)
                 out = pathlib.Path(folder) / f"{name.replace(' ', '_')}_{run}"
-                reports.append(run_once(options.rtd, arguments.format(data=options.data), out, options.domain))
-            if figures != kind:
-                kind = figures
-                print(f"\nMedian (min..max) of {options.runs} runs\n\n{HEADS[kind]}")
-            print(accuracy_row(name, reports) if kind == "accuracy" else speed_row(name, reports), flush=True)
+                reports.append(run_once(options.rtd, CASES[name].format(data=options.data), out, options.domain))
+            print(accuracy_row(name, reports), flush=True)
 
 
 if __name__ == "__main__":

@@ -121,7 +121,7 @@ TEST_F(ClipTest, lockstep_gives_the_same_bytes_every_time) {
 TEST_F(ClipTest, realtime_keeps_up_with_the_camera) {
   run("walk_xyz", "--pace realtime --filter rtd", "realtime");
   if (IsSkipped() || HasFatalFailure()) return;
-  // Functional bound only: speed is reported by tests/campaigns/measure.py, not gated on a shared machine.
+  // Functional bound only: speed is reported by tests/campaigns/speed.py, not gated on a shared machine.
   EXPECT_GE(coverage(), 0.90);
 }
 
