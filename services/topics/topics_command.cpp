@@ -59,6 +59,9 @@ void add_topics_commands(CLI::App& app, TopicsRequest& request) {
                    "End after this time, s (default: at Ctrl-C); of a recording: its first S seconds")
       ->check(CLI::Range(0.0, kMaxSeconds));
   echo->add_option("--max-array", request.max_array, "Values shown per array, 0 = all")->capture_default_str();
+  CLI::App* mirror = app.add_subcommand("mirror", "Passes topics rtd/... on as /rtd/..., for ROS 2");
+  mirror->callback([&request] { request.action = "mirror"; });
+  service::add_bus_options(*mirror, request.bus);
 }
 
 /// Waits until no new writer has appeared for a while: participants announce themselves twice a second, and each then
@@ -91,6 +94,7 @@ int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& er
       if (request.topics.size() > 1) throw service::ConfigError(kOneTopic + request.topics.front());
     }
     TopicsSession session(request.bus);
+    if (request.action == "mirror") return mirror_topics(session, out);
     if (request.action == "list") return list_topics(request, session, out, err);
     if (request.action == "hz") return measure_topics(request, session, out, err);
     return echo_topic(request, session, out, err);

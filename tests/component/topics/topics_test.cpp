@@ -5,10 +5,13 @@
 #include "services/topics/topics_command.hpp"
 
 #include <gmock/gmock.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -24,6 +27,7 @@ using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 class Topics : public ::testing::TestWithParam<std::string> {
@@ -131,6 +135,46 @@ TEST_P(Topics, whose_writers_come_one_after_the_other_are_all_listed) {
   EXPECT_EQ(run("list"), service::kOk) << err_.str();
   latecomers.join();
   for (int i = 0; i < kWriters; ++i) EXPECT_THAT(out_.str(), HasSubstr("/late" + std::to_string(i)));
+}
+
+TEST_P(Topics, of_ours_are_passed_on_under_a_name_of_ros2) {
+  sigset_t interrupt, before;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &interrupt, &before);  // it waits for the command
+  const auto bus = bus::connect(options_);
+  auto results = bus->writer(bus::topics::kTracking);
+  auto features = bus->writer(bus::topics::kFeatures);
+  const auto raw = bus::connect_raw(options_);
+  std::mutex mutex;
+  std::vector<std::byte> received;
+  bus::RawHandlers handlers;
+  handlers.on_sample = [&](const bus::RawSample& sample) {
+    const std::lock_guard lock(mutex);
+    received.assign(sample.cdr().begin(), sample.cdr().end());
+  };
+  const auto ros = raw->reader({"rt/rtd/tracking", "rtd_msgs::msg::dds_::TrackingResult_"}, {}, std::move(handlers));
+  std::thread sender([&, command = pthread_self()] {
+    msg::TrackingResult result{};
+    const auto arrived = [&] {
+      const std::lock_guard lock(mutex);
+      return !received.empty();
+    };
+    for (result.seq = 1; result.seq < 2000 && !arrived(); ++result.seq) {
+      results.write(result);
+      std::this_thread::sleep_for(5ms);
+    }
+    std::set<std::string> names;
+    for (const bus::TopicWriter& writer : raw->writers()) names.insert(writer.topic.name);
+    EXPECT_FALSE(names.contains("rt/rtd/features")) << "stays on this host";
+    pthread_kill(command, SIGINT);
+  });
+  EXPECT_EQ(run("mirror"), service::kOk) << err_.str();
+  sender.join();
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  EXPECT_EQ(received.size(), 4 + sizeof(msg::TrackingResult));
+  EXPECT_THAT(out_.str(), HasSubstr("rtd/tracking as /rtd/tracking\n"));
+  EXPECT_THAT(out_.str(), Not(HasSubstr("features")));
 }
 
 TEST_P(Topics, have_a_rate) {
