@@ -94,9 +94,12 @@ void SlamPublisher::publish_odometry(const OdometryPose& smooth) {
   previous_ = smooth;
 }
 
-/// All publishers share its topic.
+/// All publishers share its topic. The hardware is the robot or, where it has no name, the computer.
 void SlamPublisher::publish_diagnostics(msg::DiagnosticArray diagnostics) {
-  for (msg::DiagnosticStatus& status : diagnostics.status) status.name = bus::frame_of_robot(status.name, robot_);
+  for (msg::DiagnosticStatus& status : diagnostics.status) {
+    status.name = bus::frame_of_robot(status.name, robot_);
+    status.hardware_id = robot_.empty() ? service::host_name() : robot_;
+  }
   diagnostics_.write(diagnostics);
 }
 

@@ -256,6 +256,7 @@ TEST_F(SlamServiceTest, publishes_map_path_and_diagnostics) {
   EXPECT_EQ(paths_.all().back()->header.frame_id, "map");
   ASSERT_TRUE(
       diagnostics_.wait([](const auto& all) { return !all.empty() && all.back()->status.at(0).message == "ok"; }));
+  EXPECT_EQ(diagnostics_.all().back()->status[0].hardware_id, service::host_name());
 }
 
 TEST_F(SlamServiceTest, writes_its_files_when_it_stops) {
