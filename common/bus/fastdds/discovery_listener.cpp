@@ -97,7 +97,8 @@ DiscoveryListener::DiscoveryListener(const BusOptions& options, EndpointRegistry
 void DiscoveryListener::start(dds::DomainParticipant& participant, const BusOptions& options) {
   reannouncer_.start(participant);
   server_.start(options);
-  if (registry_) registry_->note(participant_of(to_writer_id(participant.guid())), participant.get_qos().name().to_string());
+  if (registry_)
+    registry_->note(participant_of(to_writer_id(participant.guid())), participant.get_qos().name().to_string());
 }
 
 void DiscoveryListener::stop() {

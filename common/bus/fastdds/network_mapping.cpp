@@ -112,7 +112,8 @@ std::uint32_t datagram_bytes(const BusOptions& options) {
   return std::max(asked, static_cast<std::uint32_t>(std::min<std::uint64_t>(handshake, kLargestDatagram)));
 }
 
-std::shared_ptr<transports::UDPv4TransportDescriptor> udp_transport(const BusOptions& options, const HostLimits& limits) {
+std::shared_ptr<transports::UDPv4TransportDescriptor> udp_transport(const BusOptions& options,
+                                                                    const HostLimits& limits) {
   auto transport = std::make_shared<transports::UDPv4TransportDescriptor>();
   transport->receiveBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max);
   transport->sendBufferSize = socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max);
@@ -165,7 +166,8 @@ const ParticipantId& server_id() {
   return kId;
 }
 
-void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope, dds::DomainParticipantQos& qos) {
+void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
+                 dds::DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(

@@ -127,7 +127,8 @@ std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first
     const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
     const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
     std::error_code unreadable;
-    if (!std::filesystem::exists(shm_dir / (std::string(kShmPrefix) + "_port" + std::to_string(port)), unreadable)) return id;
+    if (!std::filesystem::exists(shm_dir / (std::string(kShmPrefix) + "_port" + std::to_string(port)), unreadable))
+      return id;
   }
   return std::nullopt;
 }

@@ -23,6 +23,11 @@ std::string vendor_name(const Vendor& id) {
   return text.str();
 }
 
+/// The first bit of a participant's GUID is set where the rest is made of its certificate (DDS-Security 1.1, 8.4.2.5).
+bool has_certificate(const ParticipantId& participant) {
+  return (participant[0] & 0x80U) != 0;
+}
+
 std::string name_of(const FoundParticipant& participant) {
   return (participant.name.empty() ? "" : "'" + participant.name + "' ") + to_string(participant.id);
 }
@@ -74,7 +79,7 @@ void SecurityWatch::discovered(const FoundParticipant& participant) {
   if (!is_new) return;
   if (participant.vendor != kFastDds) {
     on_problem_(other_vendor_problem(domain_, std::exchange(known->second, {}), vendor_name(participant.vendor)));
-  } else if (!participant.secured) {
+  } else if (!has_certificate(participant.id)) {
     on_problem_(not_secured_problem(domain_, std::exchange(known->second, {})));
   }
 }
@@ -82,7 +87,9 @@ void SecurityWatch::discovered(const FoundParticipant& participant) {
 void SecurityWatch::refused(const ParticipantId& participant) {
   const std::lock_guard lock(mutex_);
   const auto [known, is_new] = names_.try_emplace(participant, to_string(participant));
-  if (!known->second.empty()) on_problem_(refused_problem(domain_, std::exchange(known->second, {})));
+  if (known->second.empty()) return;
+  const std::string name = std::exchange(known->second, {});
+  on_problem_(has_certificate(participant) ? refused_problem(domain_, name) : not_secured_problem(domain_, name));
 }
 
 }  // namespace rtd::bus::fastdds

@@ -19,6 +19,12 @@ using ::testing::Not;
 /// "open": access only, as the raw frames; "secret": encrypted.
 const std::vector<std::string> kTopics = {"rt/open", "rt/secret"};
 constexpr int kSamples = 100;
+/// Fast DDS 3 reports nothing of a participant before it has authenticated itself, so its name is not known then.
+#if __has_include(<fastrtps/fastrtps_dll.h>) || !defined(RTD_HAVE_FASTDDS)
+constexpr bool kFastddsNamesOthers = true;
+#else
+constexpr bool kFastddsNamesOthers = false;
+#endif
 
 class AttackTest : public ::testing::TestWithParam<std::string> {
  protected:
@@ -59,10 +65,13 @@ TEST_P(AttackTest, only_permitted_participants_receive_and_are_received) {
   // Of a refused handshake only the side that checks first knows.
   for (const char* rightful : {"writer", "reader"}) {
     const std::string problems = peers_.problems(rightful);
-    EXPECT_THAT(problems, ContainsRegex("participant 'clear' [0-9a-f.]+ in secured domain [0-9]+ has no certificate"));
+    const std::string name = GetParam() != "fastdds" || kFastddsNamesOthers ? "'clear' " : "";
+    EXPECT_THAT(problems,
+                ContainsRegex("participant " + name + "[0-9a-f.]+ in secured domain [0-9]+ has no certificate"));
     EXPECT_THAT(problems, Not(HasSubstr("'writer'")));
     EXPECT_THAT(problems, Not(HasSubstr("'reader'")));
-    EXPECT_EQ(problems.find("'clear'"), problems.rfind("'clear'")) << "reported twice: " << problems;
+    const char* const clear = "has no certificate";
+    EXPECT_EQ(problems.find(clear), problems.rfind(clear)) << "reported twice: " << problems;
   }
   if (std::getenv("RTD_SHOW_PEERS") != nullptr) std::cout << peers_.log();
   std::cout << "reader got " << peers_.got("reader", "writer") << " samples of the writer; attackers sent clear "
@@ -99,9 +108,11 @@ TEST(MixedVendorsTest, the_other_vendor_in_a_secured_domain_is_named) {
   const std::string good = Keystores(peers.scratch()).good();
   peers.start("writer", good, "/rtd/writer", kTopics);
   peers.start("reader", good, "/rtd/reader", kTopics, {}, "cyclonedds");
-  EXPECT_TRUE(peers.wait_until([&] { return !peers.problems("writer").empty() && !peers.problems("reader").empty(); }))
-      << peers.log();
+  EXPECT_TRUE(peers.wait_until([&] {
+    return (!kFastddsNamesOthers || !peers.problems("writer").empty()) && !peers.problems("reader").empty();
+  })) << peers.log();
   EXPECT_THAT(peers.problems("reader"), AllOf(HasSubstr("Fast DDS"), HasSubstr("the same --dds")));
+  if (!kFastddsNamesOthers) GTEST_SKIP() << "the other side: this version of Fast DDS reports no other vendor";
   EXPECT_THAT(peers.problems("writer"), AllOf(HasSubstr("Cyclone DDS"), HasSubstr("the same --dds")));
 }
 #endif

@@ -24,12 +24,24 @@ class AnyType {
   /// Whether generated code counts 100 elements for a sequence without a bound, or none.
   static constexpr bool kGeneratedCountsUnbounded = true;
   static constexpr std::uint32_t kRounding = 0;  ///< bytes that generated code may add to the largest sample
-  std::string name() const { return type_.getName(); }
-  std::uint32_t largest() const { return type_.m_typeSize; }
-  bool keyed() const { return type_.m_isGetKeyDefined; }
-  bool describes_itself() const { return type_.type_object() != nullptr || type_.type_information() != nullptr; }
-  void* create() { return type_.createData(); }
-  void destroy(void* data) { type_.deleteData(data); }
+  std::string name() const {
+    return type_.getName();
+  }
+  std::uint32_t largest() const {
+    return type_.m_typeSize;
+  }
+  bool keyed() const {
+    return type_.m_isGetKeyDefined;
+  }
+  bool describes_itself() const {
+    return type_.type_object() != nullptr || type_.type_information() != nullptr;
+  }
+  void* create() {
+    return type_.createData();
+  }
+  void destroy(void* data) {
+    type_.deleteData(data);
+  }
   Bytes serialised(void* data) {
     rtps::SerializedPayload_t payload(type_.getSerializedSizeProvider(data)());
     return checked(type_.serialize(data, &payload), payload);
@@ -41,12 +53,24 @@ class AnyType {
 #else
   static constexpr bool kGeneratedCountsUnbounded = false;
   static constexpr std::uint32_t kRounding = 4;
-  std::string name() const { return type_.get_name(); }
-  std::uint32_t largest() const { return type_.max_serialized_type_size; }
-  bool keyed() const { return type_.is_compute_key_provided; }
-  bool describes_itself() const { return type_.type_identifiers().type_identifier1()._d() != dds::xtypes::TK_NONE; }
-  void* create() { return type_.create_data(); }
-  void destroy(void* data) { type_.delete_data(data); }
+  std::string name() const {
+    return type_.get_name();
+  }
+  std::uint32_t largest() const {
+    return type_.max_serialized_type_size;
+  }
+  bool keyed() const {
+    return type_.is_compute_key_provided;
+  }
+  bool describes_itself() const {
+    return type_.type_identifiers().type_identifier1()._d() != dds::xtypes::TK_NONE;
+  }
+  void* create() {
+    return type_.create_data();
+  }
+  void destroy(void* data) {
+    type_.delete_data(data);
+  }
   Bytes serialised(void* data) {
     rtps::SerializedPayload_t payload(type_.calculate_serialized_size(data, dds::XCDR_DATA_REPRESENTATION));
     return checked(type_.serialize(data, payload, dds::XCDR_DATA_REPRESENTATION), payload);

@@ -17,7 +17,6 @@ struct FoundParticipant {
   ParticipantId id{};
   std::string name;
   std::array<std::uint8_t, 2> vendor{};
-  bool secured = true;  ///< false: it shows no certificate, as far as the version of Fast DDS says so
 };
 
 /// What the listener of either version receives, in the words of the bus. Called by discovery's threads.

@@ -115,7 +115,7 @@ class DiscoveryAdapter : public dds::DomainParticipantListener, public Discovery
         gone ? Change::kGone : (info.status == Info::DISCOVERED_PARTICIPANT ? Change::kAppeared : Change::kChanged);
     const rtps::ParticipantProxyData& data = info.info;
     found(FoundParticipant{change, participant_of(to_writer_id(data.m_guid)), data.m_participantName.to_string(),
-                           data.m_VendorId, !data.identity_token_.class_id().empty()});
+                           data.m_VendorId});
   }
   void onParticipantAuthentication(dds::DomainParticipant*, rtps::ParticipantAuthenticationInfo&& info) override {
     if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)

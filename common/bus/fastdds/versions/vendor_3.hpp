@@ -73,7 +73,8 @@ class TypeSupportBase : public dds::TopicDataType, public TypeFunctions {
 WriterId to_writer_id(const rtps::GUID_t& guid);
 TopicWriter to_topic_writer(const PublicationData& data);
 
-/// Of a participant whose events go to DiscoveryEvents.
+/// Of a participant whose events go to DiscoveryEvents. In a secured domain version 3 finds only those that have
+/// authenticated themselves, and reports by refused() those that cannot.
 class DiscoveryAdapter : public dds::DomainParticipantListener, public DiscoveryEvents {
   void on_participant_discovery(dds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
                                 const dds::ParticipantBuiltinTopicData& info, bool&) override {
