@@ -93,8 +93,8 @@ void resample(const std::uint8_t* row, const std::vector<Block>& blocks, std::in
   for (const Block& block : blocks) {
     for (std::size_t i = 0; i < kBlock; ++i) {
       const std::uint8_t* const seen = row + block.looked_at;
-      const int sum = seen[block.picked[2 * i]] * block.weights[2 * i] +
-                      seen[block.picked[2 * i + 1]] * block.weights[2 * i + 1];
+      const int sum =
+          seen[block.picked[2 * i]] * block.weights[2 * i] + seen[block.picked[2 * i + 1]] * block.weights[2 * i + 1];
       to[static_cast<std::size_t>(block.begin) + i] = static_cast<std::int16_t>(sum >> 4);
     }
   }
