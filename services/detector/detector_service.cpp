@@ -171,10 +171,11 @@ service::ExitCode DetectorService::run() {
   work(0);
   for (std::thread& other : others) other.join();
   const MaskStage::Counters masks = masks_ ? masks_->counters() : MaskStage::Counters{};
+  const std::uint64_t detected = detected_;
   SPDLOG_INFO(
       "event=summary frames={} dropped={} broken={} detect_ms={:.1f} detect_ms_max={:.1f} masks={} masks_ms={:.1f}",
-      detected_, arrivals_->dropped(), broken_,
-      total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(detected_, 1)), max_detect_ms_, masks.masks,
+      detected, arrivals_->dropped(), broken_,
+      total_detect_ms_ / static_cast<double>(std::max<std::uint64_t>(detected, 1)), max_detect_ms_, masks.masks,
       masks.mean_ms());
   return service::kOk;
 }
