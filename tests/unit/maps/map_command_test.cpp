@@ -94,7 +94,7 @@ TEST_F(MapCommand, exports_landmarks_and_poses_of_one_map) {
 
 TEST_F(MapCommand, exports_a_map_as_a_page) {
   ASSERT_EQ(run({"export", file_, "--format", "html", "-o", path("map.html")}), 0) << err_.str();
-  const std::string page = read_text(path("map.html"));
+  const std::string page = text_of("map.html");
   EXPECT_THAT(page, testing::HasSubstr("Path of the keyframes"));
   EXPECT_THAT(page, testing::EndsWith("</html>\n"));
 }
