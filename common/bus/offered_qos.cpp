@@ -17,10 +17,10 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr std::int64_t kForeverSeconds = 2'147'483'647;  // some middlewares count seconds in 31 bits
 
 // The numbers of rmw/types.h.
-enum History { kKeepLast = 1, kUnknownHistory = 3 };
-enum Reliability { kReliable = 1, kBestEffort = 2 };
-enum RmwDurability { kTransientLocal = 1, kVolatile = 2 };
-enum RmwLiveliness { kAutomatic = 1, kManualByTopic = 3 };
+constexpr int kKeepLast = 1, kUnknownHistory = 3;
+constexpr int kReliable = 1, kBestEffort = 2;
+constexpr int kTransientLocal = 1, kVolatile = 2;
+constexpr int kAutomatic = 1, kManualByTopic = 3;
 
 std::string time_text(const char* name, std::int64_t ns) {
   return fmt::format("  {}:\n    sec: {}\n    nsec: {}\n", name, ns / kSecond, ns % kSecond);
