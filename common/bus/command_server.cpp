@@ -25,9 +25,8 @@ class CommandServer::State {
  public:
   State(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
       : listed_(bus.commands(), name, std::move(handler)),
-        calls_(bus, {{topics_of(bus, name, kind), [this, kind](std::span<const std::byte> cdr) {
-                        return encode_answer(handle(kind, cdr));
-                      }}}) {}
+        calls_(bus, {{topics_of(bus, name, kind),
+                      [this, kind](std::span<const std::byte> cdr) { return encode_answer(handle(kind, cdr)); }}}) {}
 
  private:
   struct Listed {

@@ -70,7 +70,8 @@ RosGraph ros_graph_of(const BusOptions& options) {
 
 NodeName node_name(const std::string& participant_name, const std::string& robot) {
   NodeName node{robot.empty() ? "/" : "/" + robot, participant_name.empty() ? "rtd" : participant_name};
-  std::ranges::replace_if(node.name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+  std::ranges::replace_if(
+      node.name, [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
   return node;
 }
 

@@ -266,7 +266,8 @@ std::map<std::string, std::string> other_hashes() {
 std::string service_of(const std::string& dds_type) {
   const std::string type = ros_type(dds_type);
   for (const std::string_view part : {"_Request", "_Response"}) {
-    if (type.ends_with(part) && type.find("/srv/") != std::string::npos) return type.substr(0, type.size() - part.size());
+    if (type.ends_with(part) && type.find("/srv/") != std::string::npos)
+      return type.substr(0, type.size() - part.size());
   }
   return {};
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/bus/ros_graph.hpp"
+#include "common/msg/plausible.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::service {
@@ -196,11 +197,13 @@ msg::SetParametersAtomicallyReply Parameters::set_all(const msg::ParameterList& 
 }
 
 msg::SetParametersResult Parameters::set_one(const msg::Parameter& parameter) {
+  if (const msg::ImplausibleField bad = msg::implausible_field(parameter))
+    return {false, to_string(bad) + " is not allowed: texts have one line, numbers are finite"};
   const Setting* const setting = find(parameter.name);
   if (setting == nullptr) {
     const msg::ListParametersReply all = list({});
-    return {false, fmt::format("rtd_{} has no such parameter{}{}", service_, all.result.names.empty() ? "" : "; it has ",
-                               fmt::join(all.result.names, ", "))};
+    return {false, fmt::format("rtd_{} has no such parameter{}{}", service_,
+                               all.result.names.empty() ? "" : "; it has ", fmt::join(all.result.names, ", "))};
   }
   const std::optional<SettingValue> value = to_setting(parameter.value);
   if (!value) return {false, fmt::format("{} takes {}", setting->name, wanted(setting->form))};

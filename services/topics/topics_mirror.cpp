@@ -26,7 +26,9 @@ constexpr char kOwn[] = "rtd/";
 class Mirror {
  public:
   Mirror(bus::RawBus& bus, const bus::TopicWriter& source)
-      : bus_(bus), source_(source), writer_(bus.writer({mirror_name(source.topic.name), source.topic.type}, qos(source))) {}
+      : bus_(bus),
+        source_(source),
+        writer_(bus.writer({mirror_name(source.topic.name), source.topic.type}, qos(source))) {}
 
   static std::string mirror_name(const std::string& topic) { return "rt/" + topic; }
 

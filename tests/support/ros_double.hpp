@@ -113,13 +113,13 @@ class RosDouble {
     std::mutex mutex;
     std::condition_variable changed;
     std::optional<std::vector<std::byte>> reply;
-    const auto client = bus_->create_calls(
-        {"rq" + name + "Request", dds + "_Request_", "rr" + name + "Reply", dds + "_Response_"}, bus::CallRole::kClient,
-        [&](const bus::CallId&, std::span<const std::byte> cdr) {
-          const std::lock_guard lock(mutex);
-          reply.emplace(cdr.begin(), cdr.end());
-          changed.notify_all();
-        });
+    const auto client =
+        bus_->create_calls({"rq" + name + "Request", dds + "_Request_", "rr" + name + "Reply", dds + "_Response_"},
+                           bus::CallRole::kClient, [&](const bus::CallId&, std::span<const std::byte> cdr) {
+                             const std::lock_guard lock(mutex);
+                             reply.emplace(cdr.begin(), cdr.end());
+                             changed.notify_all();
+                           });
     for (int i = 0; i < 1000 && (client->matched_readers() < 1 || client->matched_writers() < 1); ++i)
       std::this_thread::sleep_for(10ms);
     const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(request);

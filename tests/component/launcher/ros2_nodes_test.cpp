@@ -55,7 +55,8 @@ TEST_P(Ros2Nodes, of_a_running_pipeline_are_listed_with_their_topics_and_no_endp
   const std::set<std::string> services = {"/rtd", "/rtd_camera", "/rtd_filter", "/rtd_slam"};
   ASSERT_TRUE(eventually([&] { return std::ranges::includes(ros_->nodes(), services); })) << rtd_.output();
   ASSERT_TRUE(eventually([&] {
-    return ros_->written_by("/rtd_slam").contains("rt/slam/pose") && ros_->read_by("/rtd_filter").contains("rtd/frame") &&
+    return ros_->written_by("/rtd_slam").contains("rt/slam/pose") &&
+           ros_->read_by("/rtd_filter").contains("rtd/frame") &&
            ros_->written_by("/rtd_camera").contains("rt/camera/color/camera_info");
   })) << rtd_.output();
   EXPECT_THAT(ros_->written_by("/rtd_slam"), IsSupersetOf({"rtd/tracking", "rt/slam/odometry", "rt/tf", "rtd/status"}));
@@ -72,8 +73,8 @@ TEST_P(Ros2Nodes, of_a_running_pipeline_are_listed_with_their_topics_and_no_endp
 TEST_P(Ros2Nodes, have_the_settings_that_may_change_as_parameters) {
   ros_.emplace(options_);
   const auto list = [&](const std::string& node) {
-    const auto reply = ros_->call<msg::ListParametersReply>(node, "list_parameters", "ListParameters",
-                                                            msg::ListParametersRequest());
+    const auto reply =
+        ros_->call<msg::ListParametersReply>(node, "list_parameters", "ListParameters", msg::ListParametersRequest());
     return reply ? reply->result.names : std::vector<std::string>{"no answer"};
   };
   const auto get = [&](const std::string& node, const std::string& name) {
@@ -108,9 +109,8 @@ TEST_P(Ros2Nodes, have_the_settings_that_may_change_as_parameters) {
   EXPECT_EQ(get("/rtd_filter", "filter.mode").string_value, "geometry");
   EXPECT_EQ(get("/rtd_filter", "no.such").type, type::kNotSet);
 
-  const auto described = ros_->call<msg::DescribeParametersReply>("/rtd_filter", "describe_parameters",
-                                                                  "DescribeParameters",
-                                                                  msg::ParameterNames{{"filter.mode"}});
+  const auto described = ros_->call<msg::DescribeParametersReply>(
+      "/rtd_filter", "describe_parameters", "DescribeParameters", msg::ParameterNames{{"filter.mode"}});
   ASSERT_TRUE(described && described->descriptors.size() == 1);
   EXPECT_EQ(described->descriptors[0].type, type::kString);
   EXPECT_THAT(described->descriptors[0].additional_constraints, AllOf(StartsWith("one of "), HasSubstr("rtd-paper")));

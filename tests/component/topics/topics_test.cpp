@@ -196,8 +196,7 @@ TEST_P(Topics, are_printed_field_by_field) {
   request_.duration_s = 20;
   request_.once = true;
   ASSERT_EQ(run("echo", {"/camera/color/camera_info"}), service::kOk) << err_.str();
-  EXPECT_THAT(out_.str(),
-              AllOf(HasSubstr("distortion_model: \"plumb_bob\"\n"), HasSubstr("k: [9 x 0]\n")));
+  EXPECT_THAT(out_.str(), AllOf(HasSubstr("distortion_model: \"plumb_bob\"\n"), HasSubstr("k: [9 x 0]\n")));
   request_.once = false;
   request_.count = 2;
   request_.json = true;

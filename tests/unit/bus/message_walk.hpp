@@ -12,6 +12,7 @@
 #include "common/msg/commands.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/plausible.hpp"
+#include "common/msg/ros_graph.hpp"
 
 /// A plausible message of each type with at least one element in each sequence, and its fields one by one.
 namespace rtd::bus::walk {
@@ -21,8 +22,8 @@ TypeList<A..., B...> joined(TypeList<A...>, TypeList<B...>);
 
 /// Every type that comes from outside.
 using AllTypes = decltype(joined(
-    MessageTypes(),
-    TypeList<msg::Imu, msg::TriggerRequest, msg::SetBoolRequest, msg::CommandRequest, msg::CommandReply>()));
+    MessageTypes(), TypeList<msg::Imu, msg::TriggerRequest, msg::SetBoolRequest, msg::CommandRequest, msg::CommandReply,
+                             msg::ParameterNames, msg::ParticipantEntitiesInfo<16>>()));
 
 template <class T>
 inline constexpr bool kSequence = false;

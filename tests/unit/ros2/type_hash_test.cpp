@@ -92,7 +92,8 @@ TEST(TypeHash, exists_for_our_own_types_too) {
 }
 
 TEST(TypeHash, of_an_unknown_type_is_none_but_its_endpoints_announce_something) {
-  for (const char* type : {"unknown_msgs::msg::dds_::Thing_", "unknown_srvs::srv::dds_::Thing_Request_", "KeyedSeq", ""}) {
+  for (const char* type :
+       {"unknown_msgs::msg::dds_::Thing_", "unknown_srvs::srv::dds_::Thing_Request_", "KeyedSeq", ""}) {
     EXPECT_EQ(type_hash(type), "") << type;
     EXPECT_EQ(rtd::testing::parse_user_data(user_data_of(type)), rtd::testing::UserData::kNoHash) << type;
   }

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "common/bus/commands.hpp"
 #include "tests/support/test_domain.hpp"
 
@@ -81,6 +83,7 @@ TEST_F(ParametersTest, refuse_with_the_reason) {
   list.value.type = 8;
   list.value.double_array_value = {1, 2};
   EXPECT_THAT(reason(list), HasSubstr("takes a number"));
+  EXPECT_THAT(reason(parameter("replay.speed", std::nan(""))), HasSubstr("ParameterValue.double_value is not allowed"));
   bus_->commands()->remove("replay/speed");
   EXPECT_THAT(reason(parameter("replay.speed", 2.0)), HasSubstr("does not take /replay/speed now"));
   EXPECT_EQ(parameters_.get({{"replay.speed"}}).values[0].double_value, 1) << "unchanged";

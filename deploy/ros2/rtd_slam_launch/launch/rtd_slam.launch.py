@@ -25,7 +25,7 @@ ARGUMENTS = {
     'remappings': ('', 'FROM:=TO, separated by blanks, for color, depth, info, imu and wheel_odometry', None),
     'namespace': ('', 'of the topics and frames of this robot: one name, without a slash within', None),
     'robot': ('', 'the same under the name that RTD-SLAM uses', '--robot'),
-    'out': ('', 'folder for trajectory, map, logs and report; empty: a new one in the folder for temporary files', None),
+    'out': ('', 'folder for trajectory, map, logs and report; empty: a new one for temporary files', None),
     'dds': ('', 'fastdds or cyclonedds; empty: RTD_DDS or the usual one', '--dds'),
     'profile': ('', 'lan, wifi or secure for ROS 2 on other hosts; empty: this host', '--profile'),
     'detector': ('auto', 'the detector: auto, off, remote', '--detector'),
@@ -53,7 +53,7 @@ def remapped(values):
         name = name.strip('/')
         if not separator or not topic or name not in TOPICS:
             raise RuntimeError(f"remappings: '{remapping}' is not understood: write FROM:=TO with FROM one of "
-                               f"{', '.join(TOPICS)}; topics that RTD-SLAM publishes have fixed names below the robot's")
+                               f"{', '.join(TOPICS)}; what RTD-SLAM publishes has fixed names below the robot's")
         values[name] = topic
     return values
 
@@ -64,7 +64,7 @@ def robot_of(values):
     if '/' in namespace:
         raise RuntimeError(f"namespace: '{values['namespace']}' has several parts, a robot's name has one")
     if values['robot'] and namespace and values['robot'] != namespace:
-        raise RuntimeError(f"namespace '{namespace}' and robot '{values['robot']}' are two names for the same: give one")
+        raise RuntimeError(f"namespace '{namespace}' and robot '{values['robot']}' name the same: give one")
     return values['robot'] or namespace
 
 
