@@ -93,6 +93,16 @@ msg::PointCloud2 make(std::uint64_t seq) {
   return msg::make_cloud({{x, 1, 2, 0}, {x, 2, 2, 0}, {1, 2, 3, 0}}, "rgb", stamp_ns(seq), "map");
 }
 
+template <>
+msg::OccupancyGrid make(std::uint64_t seq) {
+  msg::OccupancyGrid plan{.header = {msg::to_time(stamp_ns(seq)), "map"}};
+  plan.info.resolution = 0.05F;
+  plan.info.width = 8;
+  plan.info.height = 4;
+  plan.data.assign(32, static_cast<std::int8_t>(seq % 2 == 0 ? 0 : 100));
+  return plan;
+}
+
 class Attack {
  public:
   explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {
@@ -128,7 +138,7 @@ class Attack {
 
   void open_page() {
     page_ = hub_->open();
-    page_->on_text(R"({"op":"options","image":true,"mask":true,"points":true,"dense":true})");
+    page_->on_text(R"({"op":"options","image":true,"mask":true,"points":true,"dense":true,"moving":true,"plan":true})");
   }
 
   void step(bool hostile) {
@@ -147,7 +157,9 @@ class Attack {
     give<msg::Detection2DArray>("boxes", hostile, [&](const auto& boxes) { mirror_->add(boxes); });
     give<msg::Image>("mask", hostile, [&](const auto& mask) { mirror_->add(mask); });
     give<msg::Image>("people", hostile, [&](const auto& masks) { mirror_->add_people(masks); });
-    give<msg::PointCloud2>("cloud", hostile, [&](const auto& cloud) { mirror_->add(cloud); });
+    give<msg::PointCloud2>("cloud", hostile, [&](const auto& cloud) { mirror_->add(CloudKind::kStatic, cloud); });
+    give<msg::PointCloud2>("moving points", hostile, [&](const auto& cloud) { mirror_->add(CloudKind::kMoving, cloud); });
+    give<msg::OccupancyGrid>("floor plan", hostile, [&](const auto& plan) { mirror_->add(plan); });
     give_features(hostile);
     now_ns_ += 33'333'333;
     watch_.call("refresh", [&] { mirror_->refresh(now_ns_); });
