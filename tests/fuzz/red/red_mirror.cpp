@@ -158,7 +158,8 @@ class Attack {
     give<msg::Image>("mask", hostile, [&](const auto& mask) { mirror_->add(mask); });
     give<msg::Image>("people", hostile, [&](const auto& masks) { mirror_->add_people(masks); });
     give<msg::PointCloud2>("cloud", hostile, [&](const auto& cloud) { mirror_->add(CloudKind::kStatic, cloud); });
-    give<msg::PointCloud2>("moving points", hostile, [&](const auto& cloud) { mirror_->add(CloudKind::kMoving, cloud); });
+    give<msg::PointCloud2>("moving points", hostile,
+                           [&](const auto& cloud) { mirror_->add(CloudKind::kMoving, cloud); });
     give<msg::OccupancyGrid>("floor plan", hostile, [&](const auto& plan) { mirror_->add(plan); });
     give_features(hostile);
     now_ns_ += 33'333'333;
