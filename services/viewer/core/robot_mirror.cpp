@@ -265,8 +265,9 @@ Payload RobotMirror::at(const Overlays& overlays, std::int64_t stamp_ns, std::in
 /// On a busy host features come long after their image. They never come if the filter ended, or if it looks at other
 /// images than these.
 bool RobotMirror::filter_is_late() const {
-  return !images_.empty() && !features_.empty() && images_.size() < kKept &&
-         msg::minus_ns(images_.back().stamp_ns, features_.back().stamp_ns) <= kFilterGoneNs;
+  if (images_.empty() || features_.empty() || images_.size() >= kKept) return false;
+  const std::int64_t behind_ns = msg::minus_ns(images_.back().stamp_ns, features_.back().stamp_ns);
+  return behind_ns >= 0 && behind_ns <= kFilterGoneNs;
 }
 
 std::optional<View> RobotMirror::newest_view() const {

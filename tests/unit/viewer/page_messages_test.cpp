@@ -50,17 +50,33 @@ std::string map_messages() {
   const std::uint32_t ids[] = {3, 9};
   const TrajectoryPoint path[] = {{7, {1, 0, 0}}, {TrajectoryPoint::kNone, {2, 0, 0}}};
   const Eigen::Vector3f truth[] = {{1, 2, 3}};
-  return fmt::format("poses {}\nremoved {}\npoints {}\ncovisibility {}\nloop_edges {}\ntrajectory {}\ntruth {}\n",
+  const TrajectoryPoint valued[] = {
+      {.stamp_ns = 3'000'000'000, .sigma_m = 0.5F, .state = msg::TrackingState::kDoubtful}};
+  const float errors_m[] = {0.25F};
+  return fmt::format("trajectory_values {}\n", hex(page::trajectory_values(1, 0, 1'000'000'000, valued, errors_m))) +
+         fmt::format("poses {}\nremoved {}\npoints {}\ncovisibility {}\nloop_edges {}\ntrajectory {}\ntruth {}\n",
                      hex(page::poses(1, 2, keyframes)), hex(page::removed(1, ids)),
                      hex(page::points(1, 2, keyframes, 1)), hex(page::covisibility(1, keyframes)),
                      hex(page::loop_edges(1, ids)), hex(page::trajectory(1, 0, path)), hex(page::truth(1, 0, truth)));
+}
+
+msg::OccupancyGrid floor_plan() {
+  msg::OccupancyGrid plan;
+  plan.info.resolution = 0.5F;
+  plan.info.width = 3;
+  plan.info.height = 1;
+  plan.info.origin = {{1, 2, 3}, {0, 0, 0, 1}};
+  plan.data = {0, 100, -1};
+  return plan;
 }
 
 std::string image_messages() {
   const std::array<std::byte, 9> points{};
   return fmt::format("image {}\nfeatures {}\nmask {}\ndense {}\n", hex(page::image(1, sample<msg::CompressedImage>(3))),
                      hex(page::features(1, features())), hex(page::mask(1, mask())),
-                     hex(page::dense(page::Kind::kDense, 1, 0, 1, {1, 2, 3}, 0.5F, points)));
+                     hex(page::dense(page::Kind::kDense, 1, 0, 1, {1, 2, 3}, 0.5F, points))) +
+         fmt::format("moving {}\nplan {}\n", hex(page::dense(page::Kind::kMoving, 1, 0, 1, {1, 2, 3}, 0.5F, points)),
+                     hex(page::plan(1, floor_plan())));
 }
 
 std::string texts() {

@@ -82,7 +82,7 @@ TEST(RobotMirror, without_a_filter_the_image_is_shown_alone) {
   RobotMirror mirror(0);
   mirror.add(image(1000));
   EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'000'000'000) << "no filter yet";
-  mirror.add(*features(1001));
+  mirror.add(*features(1005));
   mirror.add(image(2002));
   EXPECT_FALSE(mirror.newest_view().has_value()) << "its features may still come";
   mirror.add(image(3100));
