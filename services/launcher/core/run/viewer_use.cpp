@@ -14,7 +14,7 @@ std::optional<ViewerUse> parse_viewer_use(const std::string& words) {
       use.waits = false;
     } else if (word == "exit") {
       use.stays = false;
-    } else if (word != "stay") {
+    } else if (word != "stay" && word != "true") {
       return std::nullopt;
     }
   }

@@ -14,7 +14,7 @@ struct ViewerUse {
   bool stays = true;  ///< until Ctrl-C, after the run
 };
 
-/// What follows `--viewer=`, with commas: "stay" (the default), "now": does not wait; "exit": does not stay. Empty for
+/// What follows `--viewer=`, with commas: "stay" or "true" (what an option without a value has), "now": does not wait; "exit": does not stay. Empty for
 /// other words.
 std::optional<ViewerUse> parse_viewer_use(const std::string& words);
 
