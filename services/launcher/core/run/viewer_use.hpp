@@ -14,8 +14,8 @@ struct ViewerUse {
   bool stays = true;  ///< until Ctrl-C, after the run
 };
 
-/// What follows `--viewer=`, with commas: "stay" or "true" (what an option without a value has), "now": does not wait; "exit": does not stay. Empty for
-/// other words.
+/// What follows `--viewer=`, with commas: "stay" or "true" (what an option without a value has), "now": does not wait;
+/// "exit": does not stay. Empty for other words.
 std::optional<ViewerUse> parse_viewer_use(const std::string& words);
 
 /// What to write instead of these words.
