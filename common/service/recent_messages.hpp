@@ -29,13 +29,14 @@ class RecentMessages {
     });
     return found == messages_.end() ? nullptr : found->get();
   }
-  /// Whether the frame, which is not kept, lies between two that are: it was lost, and newer ones came before it.
+  /// Whether the frame, which is not kept, lies between the newest one and another: it was lost, and newer ones came
+  /// before it. Of a source that went back in time the newest one is not newer.
   bool left_behind(std::uint64_t seq, std::int64_t stamp_ns) const {
-    const auto any = [this](const auto& holds) {
-      return std::ranges::any_of(messages_, [&](const auto& message) { return message && holds(*message); });
-    };
-    return any([&](const Message& m) { return m.seq < seq && m.stamp_ns < stamp_ns; }) &&
-           any([&](const Message& m) { return m.seq > seq && m.stamp_ns > stamp_ns; });
+    const auto& newest = messages_.front();
+    if (!newest || newest->seq <= seq || newest->stamp_ns <= stamp_ns) return false;
+    return std::ranges::any_of(messages_, [&](const auto& message) {
+      return message && message->seq < seq && message->stamp_ns < stamp_ns;
+    });
   }
 
  private:
