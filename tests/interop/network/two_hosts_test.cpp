@@ -196,7 +196,7 @@ TEST_P(TwoHostsTest, boxes_cross_a_lossy_link_and_come_back_after_a_cut) {
   if (std::string(GetParam().first_host) == "fastdds") {
     // Cyclone DDS announces its loopback address, too: Fast DDS sends the images there as well, without a receiver.
     const double images = std::string(GetParam().detector) == "cyclonedds" ? 0.1 : 0;
-    // 0.12 to 0.13, most of it discovery between eight processes in the first seconds.
+    // 0.12 to 0.13 of a run with its start; 0.15 MB/s when all have found each other.
     EXPECT_LT(loopback_bytes, (0.15 + images) * raw_bytes) << "the first host's own samples left shared memory";
   }
 
