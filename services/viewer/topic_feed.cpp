@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "common/bus/robot.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -93,7 +94,7 @@ void TopicFeed::add(const bus::TopicWriter& writer) {
   if (writer.topic.name == ros2::kSchemasTopic) learn_types(writer);
   Entry& entry = entries_[writer.topic.name];
   entry.topic = writer.topic;
-  if (entry.channel == 0 && allowed(entry.topic.name))
+  if (entry.channel == 0 && allowed(entry.topic.name) && !bus::is_internal_to_ros(entry.topic.name))
     entry.channel = hub_.add_channel(ros2::ros_topic(entry.topic.name), schema_of(entry.topic.type));
   robots_changed_();
 }

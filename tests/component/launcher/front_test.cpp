@@ -107,8 +107,9 @@ TEST_F(FrontTest, what_viewer_is_to_do_is_passed_on_or_explained) {
   std::ofstream(scratch_ / "rtd-replay") << "#!/bin/sh\necho \"played: $*\"\n";
   for (const char* name : {"rtd-viewer", "rtd-replay"}) fs::permissions(scratch_ / name, fs::perms::owner_all);
   const auto played = [this](const std::string& option) {
-    rtd_.run({"replay", "a.mcap", option});
-    return rtd_.output();
+    RtdCommand rtd(scratch_ / "rtd");
+    rtd.run({"replay", "a.mcap", option});
+    return rtd.output();
   };
   EXPECT_EQ(played("--viewer=now"), "played: a.mcap --hold\n");
   EXPECT_EQ(played("--viewer=exit"), "played: a.mcap --wait-page\n");
