@@ -28,9 +28,9 @@ enum class CommandKind {
 /// "std_srvs/srv/Trigger", ...
 std::string ros_type(CommandKind kind);
 
-/// Offers one command while it lives, also to the process itself (Bus::commands()). Requests wait in a bounded queue (the oldest goes and gets no answer) for a
-/// thread of this server, on which the handler runs, one call at a time. What the handler throws, and a request that
-/// cannot be read, becomes an answer without success.
+/// Offers one command while it lives, also to the process itself (Bus::commands()). Requests wait in a bounded queue
+/// (the oldest goes and gets no answer) for a thread of this server, on which the handler runs, one call at a time.
+/// What the handler throws, and a request that cannot be read, becomes an answer without success.
 class CommandServer {
  public:
   using Handler = CommandHandler;

@@ -89,7 +89,7 @@ struct TopicWriter {
 struct TopicReader {
   WriterId id{};
   RawTopic topic;
-  bool own = false;  ///< belongs to this connection
+  bool own = false;       ///< belongs to this connection
   std::string user_data;  ///< as that of a TopicWriter
 };
 

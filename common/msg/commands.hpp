@@ -44,8 +44,7 @@ void for_each_service(auto&& visit) {
   visit.template operator()<ParameterNames, GetParameterTypesReply>("rcl_interfaces/srv/GetParameterTypes");
   visit.template operator()<ParameterNames, DescribeParametersReply>("rcl_interfaces/srv/DescribeParameters");
   visit.template operator()<ParameterList, SetParametersReply>("rcl_interfaces/srv/SetParameters");
-  visit.template operator()<ParameterList, SetParametersAtomicallyReply>(
-      "rcl_interfaces/srv/SetParametersAtomically");
+  visit.template operator()<ParameterList, SetParametersAtomicallyReply>("rcl_interfaces/srv/SetParametersAtomically");
 }
 
 }  // namespace rtd::msg

@@ -21,7 +21,7 @@ struct Setting {
   const char* command;  ///< "slam/localize_only"
   Form form;
   const char* help;
-  double least = 0, most = 0;                                ///< of a number
+  double least = 0, most = 0;                     ///< of a number
   std::vector<std::string> (*words)() = nullptr;  ///< of a choice
 };
 
