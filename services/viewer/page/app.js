@@ -174,16 +174,15 @@ class App {
   updatePanels() {
     this.panelsUpdated_ms = performance.now();
     const { session, robot, connection } = this, now_ms = performance.now(), now_s = now_ms / 1000;
-    const report = situation({
-      connection: { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s },
-      hello: session.hello, robot, now_ms });
+    const link = { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s };
+    const report = situation({ connection: link, hello: session.hello, robot, now_ms });
     this.report = report;
     const allowed = connection.state === "open" && session.hello?.control === true;
     this.header.update({ report, session, robot, pose_ms: this.age.shown_ms(Date.now(), connection.clock.offset_ms) });
     byId("retry").hidden = connection.state !== "closed";
     if (this.frame.shows("plots")) this.plots.update(robot, now_s);
     if (this.frame.shows("system")) this.system.update(session, robot, connection, now_s);
-    this.fleet.update(session, this.selected, { state: connection.state, address: connection.shownAddress, retry_s: connection.retry_s }, now_ms);
+    this.fleet.update(session, this.selected, link, now_ms);
     this.historyBar.update(robot);
     if (this.frame.shows("events")) this.events.update(robot);
     this.controls.update(robot, allowed);

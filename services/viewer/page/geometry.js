@@ -12,6 +12,12 @@ export function transform(t, q, v, out, at) {
   out[at + 2] = t[2] + v[2] + 2 * (x * cy - y * cx);
 }
 
+/** Writes a landmark of a keyframe, its place-th, in the map's frame to out at index `at`. */
+export function landmark(map, { slot, points: { data, scale_m } }, place, out, at) {
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength), pose = map.pose(slot);
+  transform(pose, pose.subarray(4), [0, 2, 4].map((byte) => scale_m * view.getInt16(8 * place + byte, true)), out, at);
+}
+
 const kSamples = 3000;
 const kOutlierShare = 0.02;
 
@@ -22,12 +28,8 @@ export function samplePoints(map) {
   let skip = 0;
   for (const keyframe of map.keyframes.values()) {
     if (!keyframe.posed || !keyframe.alive || !keyframe.points) continue;
-    const { data, n, scale_m } = keyframe.points;
-    const view = new DataView(data.buffer, data.byteOffset, data.byteLength), pose = map.pose(keyframe.slot);
-    for (; skip < n; skip += stride) {
-      const p_camera = [0, 2, 4].map((byte) => scale_m * view.getInt16(8 * skip + byte, true));
-      transform(pose, pose.subarray(4), p_camera, out, out.length);
-    }
+    const { n } = keyframe.points;
+    for (; skip < n; skip += stride) landmark(map, keyframe, skip, out, out.length);
     skip -= n;
   }
   return out;

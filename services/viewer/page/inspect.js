@@ -3,7 +3,7 @@
 
 // What lies under the pointer, and what is known of it. Pure functions.
 
-import { transform } from "./geometry.js";
+import { landmark } from "./geometry.js";
 import { length } from "./format.js";
 
 const kReach_px = { keyframe: 14, mover: 22, landmark: 9 };
@@ -16,16 +16,15 @@ export function* things(map, movers, shown) {
     if (!keyframe.posed || !keyframe.alive) continue;
     const pose = map.pose(keyframe.slot);
     if (shown.keyframes) yield { kind: "keyframe", id: keyframe.id, point: [...pose.subarray(0, 3)], keyframe };
-    if (shown.points && keyframe.points) yield* landmarks(keyframe, pose);
+    if (shown.points && keyframe.points) yield* landmarks(map, keyframe);
   }
 }
 
-function* landmarks(keyframe, pose) {
-  const { data, n, scale_m } = keyframe.points, view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-  for (let i = 0; i < n; ++i) {
-    const point = [], p_camera = [0, 2, 4].map((byte) => scale_m * view.getInt16(8 * i + byte, true));
-    transform(pose, pose.subarray(4), p_camera, point, 0);
-    yield { kind: "landmark", id: `${keyframe.id}/${i}`, point, keyframe, certainty: view.getUint8(8 * i + 6) / 255 };
+function* landmarks(map, keyframe) {
+  for (let i = 0; i < keyframe.points.n; ++i) {
+    const point = [];
+    landmark(map, keyframe, i, point, 0);
+    yield { kind: "landmark", id: `${keyframe.id}/${i}`, point, keyframe, certainty: keyframe.points.data[8 * i + 6] / 255 };
   }
 }
 

@@ -3,7 +3,7 @@
 
 // What is shown, to pass on: as a link, and as one HTML file with everything inside. Pure functions.
 
-import { transform } from "./geometry.js";
+import { landmark, transform } from "./geometry.js";
 
 const kMostBytes = 5_000_000, kTexts = 20_000;   // of a file; room for its numbers and names
 const kSteps = 32767;
@@ -66,13 +66,9 @@ function partsOf({ parts }) {
 
 function landmarksOf(map) {
   const out = [];
-  for (const { posed, alive, points, slot } of map.keyframes.values()) {
-    if (!posed || !alive || !points) continue;
-    const view = new DataView(points.data.buffer, points.data.byteOffset, points.data.byteLength), pose = map.pose(slot);
-    for (let i = 0; i < points.n; ++i) {
-      const p_camera = [0, 2, 4].map((byte) => points.scale_m * view.getInt16(8 * i + byte, true));
-      transform(pose, pose.subarray(4), p_camera, out, out.length);
-    }
+  for (const keyframe of map.keyframes.values()) {
+    if (!keyframe.posed || !keyframe.alive || !keyframe.points) continue;
+    for (let i = 0; i < keyframe.points.n; ++i) landmark(map, keyframe, i, out, out.length);
   }
   return out;
 }

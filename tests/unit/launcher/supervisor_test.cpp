@@ -377,13 +377,14 @@ TEST_F(SupervisorTest, a_second_stop_asks_who_ends_last_too) {
   EXPECT_THAT(host.terminated, Contains("record"));
 }
 
+const ServicePlan kViewer{.name = "viewer",
+                          .command = {"rtd-viewer"},
+                          .role = ServiceRole::kOptional,
+                          .ends_last = true,
+                          .outlives_run = true};
+
 TEST_F(SupervisorTest, who_outlives_the_run_ends_when_asked) {
-  supervisor.start({.name = "viewer",
-                    .command = {"rtd-viewer"},
-                    .role = ServiceRole::kOptional,
-                    .ends_last = true,
-                    .outlives_run = true},
-                   now);
+  supervisor.start(kViewer, now);
   start_all();
   supervisor.stop(now, milliseconds(1000), RunOutcome::kComplete);
   advance(milliseconds(10));
@@ -397,12 +398,7 @@ TEST_F(SupervisorTest, who_outlives_the_run_ends_when_asked) {
 }
 
 TEST_F(SupervisorTest, an_interrupted_run_is_outlived_by_none) {
-  supervisor.start({.name = "viewer",
-                    .command = {"rtd-viewer"},
-                    .role = ServiceRole::kOptional,
-                    .ends_last = true,
-                    .outlives_run = true},
-                   now);
+  supervisor.start(kViewer, now);
   start_all();
   supervisor.stop(now, milliseconds(1000), RunOutcome::kInterrupted);
   advance(milliseconds(10));
