@@ -31,13 +31,6 @@ const ServiceType& type_of(CommandKind kind) {
 }
 
 template <class Message>
-std::vector<std::byte> encode(const Message& message) {
-  const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(message);
-  const auto bytes = std::as_bytes(std::span(cdr));
-  return {bytes.begin(), bytes.end()};
-}
-
-template <class Message>
 Message decode(std::span<const std::byte> cdr) {
   return ros::decode<Message>(ros::Wire::kCdr, {reinterpret_cast<const std::uint8_t*>(cdr.data()), cdr.size()});
 }
@@ -76,17 +69,17 @@ std::optional<std::string> switch_argument(const std::string& text) {
 std::vector<std::byte> encode_request(CommandKind kind, const CommandRequest& request) {
   switch (kind) {
     case CommandKind::kTrigger:
-      return encode(msg::TriggerRequest{});
+      return ros::encode_cdr(msg::TriggerRequest{});
     case CommandKind::kSetBool:
-      return encode(msg::SetBoolRequest{request.argument == "true"});
+      return ros::encode_cdr(msg::SetBoolRequest{request.argument == "true"});
     case CommandKind::kText:
-      return encode(msg::CommandRequest{request.argument});
+      return ros::encode_cdr(msg::CommandRequest{request.argument});
   }
   return {};
 }
 
 std::vector<std::byte> encode_answer(const CommandAnswer& answer) {
-  return encode(msg::CommandReply{answer.success, answer.message});
+  return ros::encode_cdr(msg::CommandReply{answer.success, answer.message});
 }
 
 CommandRequest decode_request(CommandKind kind, std::span<const std::byte> cdr) {

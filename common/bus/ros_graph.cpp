@@ -33,9 +33,7 @@ std::vector<std::byte> encode_info(const WriterId& participant, const NodeName& 
   own.node_name = node.name;
   std::ranges::transform(readers, std::back_inserter(own.reader_gid_seq), gid_of<kBytes>);
   std::ranges::transform(writers, std::back_inserter(own.writer_gid_seq), gid_of<kBytes>);
-  const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(info);
-  const auto bytes = std::as_bytes(std::span(cdr));
-  return {bytes.begin(), bytes.end()};
+  return ros::encode_cdr(info);
 }
 
 /// The name or, where a connection of this process has it already, the name with a number. Free again at its end.

@@ -26,9 +26,7 @@ std::vector<std::byte> encode_schemas(const std::vector<SchemaText>& schemas) {
   msg::WireSchemas message;
   for (const auto& [dds_type, definition] : schemas)
     message.schemas.push_back({dds_type, definition.name, definition.encoding, definition.text});
-  const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(message);
-  const auto bytes = std::as_bytes(std::span(cdr));
-  return {bytes.begin(), bytes.end()};
+  return ros::encode_cdr(message);
 }
 
 std::vector<SchemaText> decode_schemas(std::span<const std::byte> cdr) {

@@ -273,4 +273,12 @@ std::vector<std::uint8_t> encode(const Message& message) {
   return bytes;
 }
 
+/// In CDR, as the bus takes it.
+template <class Message>
+std::vector<std::byte> encode_cdr(const Message& message) {
+  const std::vector<std::uint8_t> cdr = encode<Wire::kCdr>(message);
+  const auto bytes = std::as_bytes(std::span(cdr));
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace rtd::ros

@@ -60,13 +60,6 @@ bool lies_below(const std::string& name, const std::string& prefix, std::uint64_
   return depth == 0 || static_cast<std::uint64_t>(further) < depth;
 }
 
-template <class Message>
-std::vector<std::byte> encode(const Message& message) {
-  const std::vector<std::uint8_t> cdr = ros::encode<ros::Wire::kCdr>(message);
-  const auto bytes = std::as_bytes(std::span(cdr));
-  return {bytes.begin(), bytes.end()};
-}
-
 /// A request that cannot be read gets an empty reply.
 template <class Request, class Answer>
 bus::CallServer::Handler handler(Answer answer) {
@@ -74,9 +67,9 @@ bus::CallServer::Handler handler(Answer answer) {
     try {
       Request request;
       ros::WireReader<ros::Wire::kCdr>{{reinterpret_cast<const std::uint8_t*>(cdr.data()), cdr.size()}}(request);
-      return encode(answer(request));
+      return ros::encode_cdr(answer(request));
     } catch (const ros::WireError&) {
-      return encode(decltype(answer(Request()))());
+      return ros::encode_cdr(decltype(answer(Request()))());
     }
   };
 }

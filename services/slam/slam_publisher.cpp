@@ -42,7 +42,7 @@ SlamPublisher::~SlamPublisher() {
 }
 
 void SlamPublisher::name_camera(const CameraTree::Camera& camera) {
-  if (names_.camera != camera.frame) names_.camera = camera.frame;
+  names_.camera = camera.frame;
   root_ = camera.root;
 }
 

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/sanitizers.hpp"
@@ -37,11 +36,7 @@ class EndToEndTest : public testing::Test {
   }
   /// Waits until the camera's log says that frames are being sent.
   bool wait_for_frames() { return wait_for_log("camera", "event=all_ready"); }
-  pid_t pid_of(const std::string& service) {
-    std::smatch found;
-    const std::string log = text_of(out_ + "/logs/" + service + ".log");
-    return std::regex_search(log, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
-  }
+  pid_t pid_of(const std::string& service) { return pid_in(text_of(out_ + "/logs/" + service + ".log")); }
 
   ScratchFolder scratch_;
   std::string out_ = scratch_ / "out";

@@ -9,7 +9,6 @@
 
 #include <csignal>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <thread>
 
 #include "tests/component/launcher/rtd_command.hpp"
@@ -50,11 +49,7 @@ class BusyProcesses {
 class OverloadedRun : public testing::Test {
  protected:
   std::string log(const std::string& service) const { return text_of(out_ + "/logs/" + service + ".log"); }
-  pid_t pid_of(const std::string& service) const {
-    std::smatch found;
-    const std::string text = log(service);
-    return std::regex_search(text, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
-  }
+  pid_t pid_of(const std::string& service) const { return pid_in(log(service)); }
   /// While the camera plays.
   void stop_everything_again_and_again() {
     constexpr std::chrono::milliseconds kBurst{300}, kBetween{2000};

@@ -6,7 +6,6 @@
 #include <gmock/gmock.h>
 
 #include <cstdlib>
-#include <regex>
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
@@ -21,11 +20,7 @@ using testing::Not;
 class PausedRun : public testing::TestWithParam<std::string> {
  protected:
   std::string log(const std::string& service) const { return text_of(out_ + "/logs/" + service + ".log"); }
-  pid_t pid_of(const std::string& service) const {
-    std::smatch found;
-    const std::string text = log(service);
-    return std::regex_search(text, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
-  }
+  pid_t pid_of(const std::string& service) const { return pid_in(log(service)); }
   bool wait_for_log(const std::string& service, const std::string& text) {
     for (int i = 0; i < 600; ++i) {
       if (log(service).find(text) != std::string::npos) return true;

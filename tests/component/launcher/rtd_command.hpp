@@ -10,6 +10,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -104,6 +105,12 @@ inline std::string text_of(const std::string& path) {
   std::stringstream text;
   text << file.rdbuf();
   return text.str();
+}
+
+/// The process of a service, by its log; -1: it has not started.
+inline pid_t pid_in(const std::string& log) {
+  std::smatch found;
+  return std::regex_search(log, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
 }
 
 }  // namespace rtd::launcher

@@ -40,10 +40,10 @@ class SecuredServicesTest : public ::testing::Test {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < give_up) {
       rtd_.wait_for("never printed", std::chrono::milliseconds(20));
-      std::smatch pid, memory;
-      const std::string log = text_of(camera_log);
-      if (!std::regex_search(log, pid, std::regex("event=started .*pid=([0-9]+)"))) continue;
-      const std::string maps = text_of("/proc/" + pid[1].str() + "/maps");
+      std::smatch memory;
+      const pid_t pid = pid_in(text_of(camera_log));
+      if (pid < 0) continue;
+      const std::string maps = text_of("/proc/" + std::to_string(pid) + "/maps");
       if (!std::regex_search(maps, memory, std::regex("/dev/shm/fast_datasharing_\\S+"))) continue;
       const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
       const auto perms = std::filesystem::status(memory.str()).permissions();
