@@ -17,7 +17,8 @@ struct PrefixedCall {
   std::vector<std::byte> cdr;  ///< without the prefix
 };
 
-/// Whether the client is known by its number in a prefix, and not by the GUID of an endpoint, which never ends in zeros.
+/// Whether the client is known by its number in a prefix, and not by the GUID of an endpoint, which never ends in
+/// zeros.
 bool is_prefixed(const CallId& id);
 
 /// The sample with the prefix, little endian. `cdr` has at least its header.

@@ -16,10 +16,9 @@ template <class... T>
 struct TypeList {};
 
 /// Every message type that the bus carries.
-using MessageTypes =
-    TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent, TrackingResult,
-             ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray, Odometry, PoseStamped, TFMessage,
-             Path, PointCloud2, DiagnosticArray, MapUpdate, Movers, Detection3DArray, MarkerArray, OccupancyGrid,
-             TransformStamped>;
+using MessageTypes = TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent,
+                              TrackingResult, ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray,
+                              Odometry, PoseStamped, TFMessage, Path, PointCloud2, DiagnosticArray, MapUpdate, Movers,
+                              Detection3DArray, MarkerArray, OccupancyGrid, TransformStamped>;
 
 }  // namespace rtd::msg

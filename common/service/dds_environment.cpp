@@ -149,9 +149,9 @@ std::optional<DdsSetting> compare_range(const EnvironmentReader& environment, co
   if (range == "OFF") return DdsSetting{what + ": ROS 2 programs with it find no other one, rtd neither", false};
   if (range != "SUBNET") return std::nullopt;
   if (!this_host) return DdsSetting{what + ": as here, the network", true};
-  return DdsSetting{fmt::format("{}: ROS 2 programs with it use the network, rtd only this host; {} uses it, too", what,
-                                kNetwork),
-                    false};
+  return DdsSetting{
+      fmt::format("{}: ROS 2 programs with it use the network, rtd only this host; {} uses it, too", what, kNetwork),
+      false};
 }
 
 }  // namespace

@@ -34,9 +34,8 @@ class RecentMessages {
   bool left_behind(std::uint64_t seq, std::int64_t stamp_ns) const {
     const auto& newest = messages_.front();
     if (!newest || newest->seq <= seq || newest->stamp_ns <= stamp_ns) return false;
-    return std::ranges::any_of(messages_, [&](const auto& message) {
-      return message && message->seq < seq && message->stamp_ns < stamp_ns;
-    });
+    return std::ranges::any_of(
+        messages_, [&](const auto& message) { return message && message->seq < seq && message->stamp_ns < stamp_ns; });
   }
 
  private:

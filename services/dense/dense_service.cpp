@@ -245,8 +245,8 @@ void DenseService::forget_published_grid() {
   constexpr auto is_unknown = [](std::int8_t cell) { return cell == NavigationGrid::kUnknown; };
   if (std::ranges::all_of(published_grid_.cells, is_unknown)) return;
   std::ranges::fill(published_grid_.cells, NavigationGrid::kUnknown);
-  grid_writer_.write(make_grid(published_grid_, navigation_->R_grid_map(), newest_stamp_ns_,
-                               runtime_.bus.frame(config_.map_frame)));
+  grid_writer_.write(
+      make_grid(published_grid_, navigation_->R_grid_map(), newest_stamp_ns_, runtime_.bus.frame(config_.map_frame)));
   grid_stale_ = true;
 }
 

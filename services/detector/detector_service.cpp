@@ -19,8 +19,8 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/service/patience.hpp"
 #include "common/service/onnxruntime_locator.hpp"
+#include "common/service/patience.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
@@ -235,7 +235,8 @@ std::optional<DetectorService::Found> DetectorService::detect(std::size_t worker
       const double roll_rad = roll_for(arrival);
       const auto boxes = detector.detect_upright(*image, roll_rad);
       const double boxes_ms = static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs;
-      Found found{to_message(boxes, arrival.stamp_ns, service::camera_frame(runtime_.heartbeat, runtime_.bus)), std::nullopt};
+      Found found{to_message(boxes, arrival.stamp_ns, service::camera_frame(runtime_.heartbeat, runtime_.bus)),
+                  std::nullopt};
       found.masks = find_masks(worker, {*image, boxes, roll_rad, boxes_ms}, found.detections.header);
       report_engine(detector);
       count(boxes_ms);

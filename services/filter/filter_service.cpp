@@ -164,7 +164,8 @@ void FilterService::process(Work work) {
   trace(waiting_since_ns, judging_since_ns);
   writer_.write(*message_);
   // After the features: slam's pose waits for them, not for the mask. Costs nothing without a subscriber.
-  if (mask_writer_.matched() > 0) mask_writer_.write(make_mask(frame, result, service::camera_frame(runtime_.heartbeat, runtime_.bus)));
+  if (mask_writer_.matched() > 0)
+    mask_writer_.write(make_mask(frame, result, service::camera_frame(runtime_.heartbeat, runtime_.bus)));
   if (movers_.wanted()) movers_.add(frame.seq, frame.stamp_ns, filter_.sight_objects(image, result));
   ++published_;
   count(result);

@@ -23,7 +23,8 @@ msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, std::int64_
 
 /// Publishes where the objects of each frame are, once slam has said where the camera was: one frame later.
 /// `rtd/movers` says most; `rt/filter/movers` and `rt/filter/movers_markers` are for programs of ROS 2. Frames that
-/// slam did not track have no movers; `rtd/movers` has those of the first map only. Each topic costs nothing while it has no reader. One thread.
+/// slam did not track have no movers; `rtd/movers` has those of the first map only. Each topic costs nothing while it
+/// has no reader. One thread.
 class MoversPublisher {
  public:
   /// `map_frame`: name on the wire.

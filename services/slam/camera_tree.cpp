@@ -35,9 +35,8 @@ CameraTree::CameraTree(const ServiceConfig& config, service::Runtime& runtime)
       transforms_(std::make_shared<Transforms>()) {
   if (base_given_) return;
   reader_ = runtime.bus.reader<msg::TFMessage>(
-      bus::topics::kTfStatic, [into = transforms_](const std::shared_ptr<const msg::TFMessage>& message) {
-        into->add(*message);
-      });
+      bus::topics::kTfStatic,
+      [into = transforms_](const std::shared_ptr<const msg::TFMessage>& message) { into->add(*message); });
 }
 
 const CameraTree::Camera& CameraTree::camera() {

@@ -13,7 +13,7 @@ namespace rtd::slam {
 namespace {
 
 constexpr double kNsPerS = 1e9;
-constexpr double kUnknown = 1e6;     // a variance, m2 and rad2: receivers take no message with numbers that are none
+constexpr double kUnknown = 1e6;        // a variance, m2 and rad2: receivers take no message with numbers that are none
 constexpr double kByDefinition = 1e-8;  // m2 and rad2: the first pose of a map; filters refuse a covariance of zeros
 
 using geometry::RowMajor6d;
@@ -27,9 +27,8 @@ msg::Pose to_pose(const msg::Transform& T) {
 msg::TransformStamped make_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
                                      const msg::Transform& T_parent_child) {
   const msg::Pose pose = to_pose(T_parent_child);
-  return {{msg::to_time(stamp_ns), parent},
-          child,
-          {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
+  return {
+      {msg::to_time(stamp_ns), parent}, child, {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
 }
 
 /// Covariance of a motion between two poses of known covariance, per second, in the camera frame.

@@ -77,8 +77,7 @@ bool surely_empty(const BusOptions& options, const std::string& udp_table) {
   if (!network.loopback_only || !network.multicast || !network.peers.empty() || !network.discovery_server.empty())
     return false;
   const std::vector<std::uint32_t> in_use = domains_in_use(udp_table);
-  return std::ifstream(udp_table).good() &&
-         std::ranges::count(in_use, static_cast<std::uint32_t>(options.domain)) == 0;
+  return std::ifstream(udp_table).good() && std::ranges::count(in_use, static_cast<std::uint32_t>(options.domain)) == 0;
 }
 
 std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table) {

@@ -31,8 +31,8 @@ bool takes_participant_port(const BusOptions& options);
 int free_participant_ports(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");
 /// DDS domains in which a program on this host receives announcements, in order.
 std::vector<std::uint32_t> domains_in_use(const std::string& udp_table = "/proc/self/net/udp");
-/// No participant is in the domain, for it could only be on this host, where its discovery port would show it. False when
-/// others may be on a network, or be found without that port. Ask before this process joins the domain.
+/// No participant is in the domain, for it could only be on this host, where its discovery port would show it. False
+/// when others may be on a network, or be found without that port. Ask before this process joins the domain.
 bool surely_empty(const BusOptions& options, const std::string& udp_table = "/proc/self/net/udp");
 /// For a process without peers in its domain: ", but on this host DDS runs in domain 0: ..."; empty when it does not.
 std::string other_domains_hint(std::uint32_t domain, const std::string& udp_table = "/proc/self/net/udp");

@@ -50,11 +50,11 @@ std::unique_ptr<Collector::Readers> Collector::subscribe() {
   };
   readers->tracking = bus_.reader(bus::topics::kTracking, add, slam_->callbacks());
   readers->features = bus_.reader(bus::topics::kFeatures, add, filter_->callbacks());
-  readers->status = bus_.reader(
-      bus::topics::kStatus,
-      [recipient](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
-        deliver(*recipient, [&](Collector& collector) { collector.add(*status, writer); });
-      });
+  readers->status =
+      bus_.reader(bus::topics::kStatus,
+                  [recipient](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
+                    deliver(*recipient, [&](Collector& collector) { collector.add(*status, writer); });
+                  });
   if (with_masks_) readers->masks = bus_.reader(bus::topics::kPersonMasks, add);
   if (reads_frames_) subscribe_to_frames(*readers);
   return readers;

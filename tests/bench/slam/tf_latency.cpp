@@ -138,10 +138,9 @@ int measure(const Options& options) {
   const auto tf_reader = bus->reader(bus::topics::kTf, [&](const std::shared_ptr<const msg::TFMessage>& message) {
     if (!message->transforms.empty()) tf.note(msg::to_ns(message->transforms.back().header.stamp));
   });
-  const auto odometry_reader =
-      bus->reader(bus::topics::kOdometry, [&](const std::shared_ptr<const msg::Odometry>& message) {
-        odometry.note(msg::to_ns(message->header.stamp));
-      });
+  const auto odometry_reader = bus->reader(
+      bus::topics::kOdometry,
+      [&](const std::shared_ptr<const msg::Odometry>& message) { odometry.note(msg::to_ns(message->header.stamp)); });
   const std::chrono::nanoseconds period(static_cast<std::int64_t>(1e9 / options.fps));
   std::printf("waiting for a camera in domain %u\n", options.domain);
   std::fflush(stdout);

@@ -18,7 +18,8 @@ int main(int argc, char** argv) {
   const std::string rmw = argv[1], setting = argv[2];
   const auto domain = static_cast<std::uint32_t>(std::atoi(argv[3]));
   try {
-    const auto ros = rmw == "rmw_fastrtps" ? double_of_fastrtps(setting, domain) : double_of_cyclonedds(setting, domain);
+    const auto ros =
+        rmw == "rmw_fastrtps" ? double_of_fastrtps(setting, domain) : double_of_cyclonedds(setting, domain);
     int patience_ms = 0;
     for (std::string command; std::cin >> command >> patience_ms;) {
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(patience_ms);

@@ -12,8 +12,8 @@ namespace rtd::test_support {
 ///   unset, localhost_only=0    Humble: the vendor's defaults
 ///   localhost_only=1           Humble
 ///   SUBNET, LOCALHOST, OFF, SYSTEM_DEFAULT    ROS_AUTOMATIC_DISCOVERY_RANGE, Iron and later; SUBNET is their default
-inline constexpr const char* kRosSettings[] = {"unset",  "localhost_only=0", "localhost_only=1", "SUBNET", "LOCALHOST",
-                                               "SYSTEM_DEFAULT", "OFF"};
+inline constexpr const char* kRosSettings[] = {
+    "unset", "localhost_only=0", "localhost_only=1", "SUBNET", "LOCALHOST", "SYSTEM_DEFAULT", "OFF"};
 
 /// A participant that is set up as an RMW sets up its own, directly on the vendor's library: it reads `rt/slam/pose`
 /// and writes `rt/camera/ground_truth`.

@@ -16,8 +16,9 @@ std::string config_of(const std::string& setting) {
   if (setting == "localhost_only=1")
     return "<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"
            "</General></Domain></CycloneDDS>";
-  const std::string first_ports = "<ParticipantIndex>auto</ParticipantIndex>"
-                                  "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
+  const std::string first_ports =
+      "<ParticipantIndex>auto</ParticipantIndex>"
+      "<MaxAutoParticipantIndex>32</MaxAutoParticipantIndex>";
   const std::string begin = "<CycloneDDS><Domain>", end = "</Discovery></Domain></CycloneDDS>";
   const std::string no_multicast = "<General><AllowMulticast>false</AllowMulticast></General>";
   if (setting == "SUBNET") return begin + "<Discovery>" + first_ports + end;
@@ -67,8 +68,7 @@ class CycloneDouble final : public RmwDouble {
 
  private:
   dds_entity_t topic(const char* name) const {
-    return required(
-        dds_create_topic(participant_, &geometry_msgs_msg_dds__PoseStamped__desc, name, nullptr, nullptr));
+    return required(dds_create_topic(participant_, &geometry_msgs_msg_dds__PoseStamped__desc, name, nullptr, nullptr));
   }
 
   const dds_entity_t domain_, participant_;

@@ -21,14 +21,12 @@ TEST(CycloneConfig, keeps_to_loopback_with_multicast_for_discovery_only) {
   EXPECT_THAT(domain_config({}, kLimits),
               AllOf(HasSubstr(R"(<NetworkInterface address="127.0.0.1" multicast="true"/></Interfaces>)"),
                     HasSubstr("<AllowMulticast>spdp</AllowMulticast>"),
-                    HasSubstr(R"(<Peers><Peer address="127.0.0.1"/></Peers>)"),
-                    Not(HasSubstr("SharedMemory"))));
+                    HasSubstr(R"(<Peers><Peer address="127.0.0.1"/></Peers>)"), Not(HasSubstr("SharedMemory"))));
 }
 
 TEST(CycloneConfig, takes_a_port_that_peers_ask_or_any) {
   EXPECT_THAT(domain_config({}, kLimits), HasSubstr("<ParticipantIndex>auto</ParticipantIndex>"));
-  EXPECT_THAT(domain_config({}, kLimits, DiscoveryPort::kAny),
-              HasSubstr("<ParticipantIndex>none</ParticipantIndex>"));
+  EXPECT_THAT(domain_config({}, kLimits, DiscoveryPort::kAny), HasSubstr("<ParticipantIndex>none</ParticipantIndex>"));
 }
 
 TEST(CycloneConfig, asks_for_no_more_buffer_than_the_kernel_grants) {

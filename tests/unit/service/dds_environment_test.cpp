@@ -72,11 +72,11 @@ TEST_F(DdsEnvironment, static_peers_are_followed_on_a_network) {
 
 TEST_F(DdsEnvironment, profiles_are_named_with_the_options_in_their_place) {
   options_.vendor = "cyclonedds";
-  const DdsSetting text = follow(
-      "CYCLONEDDS_URI",
-      R"(<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="eth0"/></Interfaces></General>)"
-      R"(<Discovery><Peers><Peer address="10.0.0.7"/><Peer Address="10.0.0.8"/></Peers></Discovery>)"
-      R"(</Domain></CycloneDDS>)");
+  const DdsSetting text =
+      follow("CYCLONEDDS_URI",
+             R"(<CycloneDDS><Domain><General><Interfaces><NetworkInterface name="eth0"/></Interfaces></General>)"
+             R"(<Discovery><Peers><Peer address="10.0.0.7"/><Peer Address="10.0.0.8"/></Peers></Discovery>)"
+             R"(</Domain></CycloneDDS>)");
   EXPECT_FALSE(text.followed);
   EXPECT_THAT(text.text, AllOf(HasSubstr("CYCLONEDDS_URI"), HasSubstr("--peers 10.0.0.7,10.0.0.8"),
                                HasSubstr("--interface eth0")));

@@ -25,8 +25,8 @@ struct ServicePlan {
   std::string name;
   std::vector<std::string> command;  ///< executable and arguments
   ServiceRole role = ServiceRole::kEssential;
-  int niceness = 0;           ///< see ProcessSpec
-  bool ends_last = false;     ///< stopped after all others: a recorder still receives their last messages
+  int niceness = 0;        ///< see ProcessSpec
+  bool ends_last = false;  ///< stopped after all others: a recorder still receives their last messages
   /// More arguments for a restart; may be empty. Called at each restart.
   std::function<std::vector<std::string>()> when_restarted = {};
   /// Of a live camera: whether it has ever given a frame. One that gave up before is not started again, because it has
