@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// rmw_double RMW SETTING DOMAIN: joins, and for each line "look MS" on stdin writes and reads for so long, or until it
-/// has received something; prints how many messages came.
+/// rmw_double RMW SETTING DOMAIN: joins and writes until stdin ends. For each line "look MS" on stdin it reads for so
+/// long, or until it has received something; prints how many messages came.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -20,16 +20,21 @@ int main(int argc, char** argv) {
   try {
     const auto ros =
         rmw == "rmw_fastrtps" ? double_of_fastrtps(setting, domain) : double_of_cyclonedds(setting, domain);
+    // Who is matched later than its own messages arrive still receives.
+    const std::jthread writing([&ros](const std::stop_token& end) {
+      while (!end.stop_requested()) {
+        ros->write();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      }
+    });
     int patience_ms = 0;
     for (std::string command; std::cin >> command >> patience_ms;) {
       const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(patience_ms);
       int received = 0;
       while (received == 0 && std::chrono::steady_clock::now() < end) {
-        ros->write();
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
         received += ros->take();
       }
-      for (int i = 0; i < 10; ++i) ros->write();  // who is found a little later still receives
       std::printf("received %d\n", received);
       std::fflush(stdout);
     }
