@@ -30,9 +30,10 @@ struct Vendor {
 class ServesBoth : public BusBackend {
  public:
   explicit ServesBoth(const BusOptions& options)
-      : BusBackend(options.vendor), own_(cyclonedds::create_backend(options)), options_(options) {
+      : BusBackend(options.vendor), own_(cyclonedds::create_backend(options, node_)), options_(options) {
     options_.vendor = "fastdds";
     options_.shared_memory = options_.iceoryx = false;
+    options_.ros_graph = "off";  // own_ announces the node of both
   }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
@@ -45,30 +46,34 @@ class ServesBoth : public BusBackend {
   std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {
     if (role == CallRole::kClient) return own_->create_calls(topics, role, std::move(on_call));
     const std::lock_guard lock(mutex_);
-    if (!serving_) serving_ = fastdds::create_backend(options_);
+    if (!serving_) serving_ = fastdds::create_backend(options_, node_);
     return serving_->create_calls(topics, role, std::move(on_call));
   }
 
  private:
+  const std::shared_ptr<NodeEndpoints> node_ = std::make_shared<NodeEndpoints>();
   const std::shared_ptr<BusBackend> own_;
   BusOptions options_;  ///< of serving_
   std::mutex mutex_;
   std::shared_ptr<BusBackend> serving_;
 };
 
+#endif
+
+#ifdef RTD_HAVE_CYCLONEDDS
 /// A secured domain has one vendor only.
 std::shared_ptr<BusBackend> create_cyclonedds(const BusOptions& options) {
-  if (options.security.enabled()) return cyclonedds::create_backend(options);
-  return std::make_shared<ServesBoth>(options);
+#ifdef RTD_HAVE_FASTDDS
+  if (!options.security.enabled()) return std::make_shared<ServesBoth>(options);
+#endif
+  return cyclonedds::create_backend(options);
 }
-#elif defined(RTD_HAVE_CYCLONEDDS)
-constexpr auto create_cyclonedds = cyclonedds::create_backend;
 #endif
 
 /// A new vendor is a folder beside this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
-    {"fastdds", fastdds::create_backend, fastdds::create_raw_bus, true},
+    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus, true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
     {"cyclonedds", create_cyclonedds, cyclonedds::create_raw_bus, true},

@@ -16,6 +16,9 @@ constexpr std::string_view kOwn = "rtd/", kRos = "rt/", kRequest = "rq/", kReply
 /// First parts of the names below "rt/" that belong to one robot.
 constexpr std::array<std::string_view, 5> kNodes = {"camera/", "detector/", "filter/", "slam/", "dense/"};
 
+/// The floor plan, where a map server of ROS 2 has its own.
+constexpr std::string_view kPlan = "map";
+
 /// Those that only commands have.
 constexpr std::array<std::string_view, 2> kCommandNodes = {"recorder/", "replay/"};
 
@@ -34,7 +37,7 @@ std::string_view kind_of(std::string_view topic) {
 /// Whether a robot has its own topic of that kind and name.
 bool is_own(std::string_view kind, std::string_view name) {
   if (kind == kOwn) return true;
-  return begins_with_one(name, kNodes) || (kind != kRos && begins_with_one(name, kCommandNodes));
+  return begins_with_one(name, kNodes) || (kind == kRos ? name == kPlan : begins_with_one(name, kCommandNodes));
 }
 
 /// The prefix of a topic that belongs to one robot; "" for others.

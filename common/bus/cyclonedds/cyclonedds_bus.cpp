@@ -93,9 +93,9 @@ NodeAnnouncer::CreateWriter writers_of(const std::shared_ptr<Participant>& parti
 
 class CycloneBackend : public BusBackend {
  public:
-  explicit CycloneBackend(const BusOptions& options)
+  CycloneBackend(const BusOptions& options, std::shared_ptr<NodeEndpoints> node)
       : BusBackend("cyclonedds"),
-        participant_(std::make_shared<Participant>(options)),
+        participant_(std::make_shared<Participant>(options, std::move(node))),
         announcer_(participant_->node_endpoints(), participant_->id(), options, writers_of(participant_)) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
@@ -174,8 +174,8 @@ class CycloneRawBus : public RegistryRawBus {
 
 }  // namespace
 
-std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
-  return std::make_shared<CycloneBackend>(options);
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options, std::shared_ptr<NodeEndpoints> node) {
+  return std::make_shared<CycloneBackend>(options, std::move(node));
 }
 
 std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {

@@ -210,13 +210,14 @@ void EndpointWatch::take_all() {
   }
 }
 
-Participant::Participant(const BusOptions& options)
+Participant::Participant(const BusOptions& options, std::shared_ptr<NodeEndpoints> node)
     : unmatched_(UnmatchedWatch::start(options)),
       domain_(join_domain(options)),
       participant_(create_participant(options)),
       id_(guid_of(participant_.get())),
       shares_memory_(options.iceoryx),
-      loopback_only_(options.network.loopback_only) {}
+      loopback_only_(options.network.loopback_only),
+      node_endpoints_(node ? std::move(node) : std::make_shared<NodeEndpoints>()) {}
 
 void Participant::set_writer_partition(const std::string& topic, dds_qos_t& qos) const {
   if (loopback_only_ || !stays_on_host(topic)) return;

@@ -52,8 +52,8 @@ class EndpointWatch {
 /// Our participant in a domain, and its topics. Thread-safe.
 class Participant {
  public:
-  /// Throws BusError when Cyclone refuses.
-  explicit Participant(const BusOptions& options);
+  /// `node`: where its endpoints enter themselves, nullptr: in one of its own. Throws BusError when Cyclone refuses.
+  explicit Participant(const BusOptions& options, std::shared_ptr<NodeEndpoints> node = nullptr);
 
   dds_entity_t handle() const { return participant_.get(); }
   const WriterId& id() const { return id_; }
@@ -71,7 +71,7 @@ class Participant {
   VendorTopic topic(const std::string& name, const SampleType& type);
   TopicTypes& types();
   /// What is announced to ROS 2: endpoints enter themselves.
-  NodeEndpoints& node_endpoints() { return node_endpoints_; }
+  NodeEndpoints& node_endpoints() { return *node_endpoints_; }
 
  private:
   struct KnownTopic {
@@ -89,7 +89,7 @@ class Participant {
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
   TopicTypes types_;
-  NodeEndpoints node_endpoints_;
+  const std::shared_ptr<NodeEndpoints> node_endpoints_;
   std::unique_ptr<EndpointWatch> writers_, readers_;  ///< from the first call of types() on; they end first
 };
 

@@ -239,8 +239,9 @@ HostLimits sufficient_limits(const BusOptions& options) {
 
 }  // namespace
 
-std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
-  return std::make_shared<FastddsBackend>(std::make_shared<Participant>(options, sufficient_limits(options)), options);
+std::shared_ptr<BusBackend> create_backend(const BusOptions& options, std::shared_ptr<NodeEndpoints> node) {
+  return std::make_shared<FastddsBackend>(
+      std::make_shared<Participant>(options, sufficient_limits(options), nullptr, std::move(node)), options);
 }
 
 std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {

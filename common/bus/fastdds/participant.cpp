@@ -133,8 +133,11 @@ std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first
   return std::nullopt;
 }
 
-Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry)
-    : secured_(options.security.enabled()), listener_(options, registry) {
+Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry,
+                         std::shared_ptr<NodeEndpoints> node)
+    : secured_(options.security.enabled()),
+      node_endpoints_(node ? std::move(node) : std::make_shared<NodeEndpoints>()),
+      listener_(options, registry) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
     throw BusError("shared-memory segment of " + std::to_string(options.shm_segment_mib) +
                    " MiB, allowed: " + std::to_string(kMinSegmentMib) + "..1024");

@@ -30,8 +30,10 @@ std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first
 /// Our participant in a domain: transports, publisher, subscriber and topics. Thread-safe.
 class Participant {
  public:
-  /// Throws BusError when Fast DDS refuses. `writers`, if any, gets all writers of the domain from the first one on.
-  Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry = nullptr);
+  /// Throws BusError when Fast DDS refuses. `registry`, if any, gets all writers of the domain from the first one on;
+  /// `node`, if any, its endpoints, else one of its own.
+  Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry = nullptr,
+              std::shared_ptr<NodeEndpoints> node = nullptr);
   ~Participant();
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
@@ -45,7 +47,7 @@ class Participant {
   TopicTypes& types() { return listener_.types(); }
   WriterId id() const;
   /// What is announced to ROS 2: endpoints enter themselves.
-  NodeEndpoints& node_endpoints() { return node_endpoints_; }
+  NodeEndpoints& node_endpoints() { return *node_endpoints_; }
   /// What is discovered from now on goes to this listener, which outlives the participant or is silenced, instead of
   /// to ours.
   void observe(dds::DomainParticipantListener& listener) {
@@ -65,13 +67,13 @@ class Participant {
   void create_publishers(const NetworkOptions& network);
 
   const bool secured_;
+  const std::shared_ptr<NodeEndpoints> node_endpoints_;
   DiscoveryListener listener_;                              // outlives the participant, which calls it
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
   dds::DomainParticipant* participant_ = nullptr;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
   std::mutex topics_mutex_, readers_mutex_;
-  NodeEndpoints node_endpoints_;
 };
 
 }  // namespace rtd::bus::fastdds

@@ -136,6 +136,11 @@ TEST_P(Ros2Wire, a_connection_is_a_node_that_follows_its_endpoints) {
     detections = {};
     EXPECT_TRUE(RosDouble::eventually([&] { return reads().empty(); }));
     EXPECT_EQ(writes(), pose_only);
+    // With Cyclone DDS a service is one of a second participant, on Fast DDS.
+    const CommandServer server(*bus, "slam/reset", CommandKind::kTrigger, [](const auto&) { return CommandAnswer{}; });
+    EXPECT_TRUE(RosDouble::eventually([&] { return reads() == std::set<std::string>{"rq/anna/slam/resetRequest"}; }));
+    EXPECT_TRUE(RosDouble::eventually([&] { return writes().contains("rr/anna/slam/resetReply"); }));
+    EXPECT_FALSE(ros.nodes().contains("/anna/rtd_slam_3"));
     EXPECT_EQ(ros.warnings(), std::vector<std::string>());
   }
 }

@@ -45,13 +45,6 @@ class Ros2Nodes : public ::testing::TestWithParam<std::string> {
     });
   }
 
-  /// With Cyclone DDS a service is one of a second participant, on Fast DDS, which is a node of its own.
-  std::set<std::string> served_by(const std::string& node) {
-    std::set<std::string> topics = ros_->read_by(node);
-    topics.merge(ros_->read_by(node + "_2"));
-    return topics;
-  }
-
   ScratchFolder scratch_;
   bus::BusOptions options_;
   RtdCommand rtd_;
@@ -66,7 +59,7 @@ TEST_P(Ros2Nodes, of_a_running_pipeline_are_listed_with_their_topics_and_no_endp
     return ros_->written_by("/rtd_slam").contains("rt/slam/pose") &&
            ros_->read_by("/rtd_filter").contains("rtd/frame") &&
            ros_->written_by("/rtd_camera").contains("rt/camera/color/camera_info") &&
-           served_by("/rtd_slam").contains("rq/slam/resetRequest") && !ros_->service_type("/slam/reset").empty() &&
+           ros_->read_by("/rtd_slam").contains("rq/slam/resetRequest") && !ros_->service_type("/slam/reset").empty() &&
            !ros_->service_type("/rtd_camera/list_parameters").empty();
   })) << rtd_.output();
   EXPECT_THAT(ros_->written_by("/rtd_slam"), IsSupersetOf({"rtd/tracking", "rt/slam/odometry", "rt/tf", "rtd/status"}));
@@ -98,8 +91,8 @@ TEST_P(Ros2Nodes, have_the_settings_that_may_change_as_parameters) {
     return reply && reply->results.size() == 1 ? reply->results[0] : msg::SetParametersResult{false, "no answer"};
   };
   ASSERT_TRUE(eventually([&] {
-    return served_by("/rtd_slam").contains("rq/slam/localize_onlyRequest") &&
-           served_by("/rtd_filter").contains("rq/filter/set_modeRequest");
+    return ros_->read_by("/rtd_slam").contains("rq/slam/localize_onlyRequest") &&
+           ros_->read_by("/rtd_filter").contains("rq/filter/set_modeRequest");
   })) << rtd_.output();
   EXPECT_THAT(list("/rtd_filter"), ElementsAre("filter.mode"));
   EXPECT_THAT(list("/rtd_slam"), ElementsAre("slam.localize_only"));

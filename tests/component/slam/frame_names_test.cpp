@@ -4,10 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -17,6 +15,7 @@
 #include "common/geometry/transform_log.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/slam_service.hpp"
+#include "tests/support/frames_table.hpp"
 #include "tests/support/service_fixture.hpp"
 #include "tests/support/two_places.hpp"
 
@@ -24,6 +23,8 @@ namespace rtd::slam {
 namespace {
 
 using test_support::Inbox;
+using test_support::link;
+using test_support::Links;
 using test_support::TwoPlaces;
 
 constexpr double kStep_m = 0.05;
@@ -35,33 +36,6 @@ Eigen::Isometry3d isometry_of(const msg::RosTransform& transform) {
 
 Eigen::Vector3d position_of(const msg::Pose& pose) {
   return {pose.position.x, pose.position.y, pose.position.z};
-}
-
-/// Frames and children that the table names for a topic: "map -> odom".
-using Links = std::set<std::string>;
-
-std::string link(std::string frame, const std::string& child) {
-  return child.empty() ? frame : frame + " -> " + child;
-}
-
-/// The rows of the table, by topic.
-std::map<std::string, Links> table_of_frames() {
-  std::ifstream file(RTD_FRAMES_PAGE);
-  const std::regex row(R"(^\| (`rt/[^|]*) \| `?([a-z]+)`? \| ?([^|]*?) ?\|.*)"), name("`([a-z_]+)`|(camera) or base"),
-      topic("`(rt/[a-z0-9_/]+)`");
-  std::map<std::string, Links> table;
-  for (std::string line; std::getline(file, line);) {
-    std::smatch cells;
-    if (!std::regex_match(line, cells, row)) continue;
-    const std::string topics = cells[1], children = cells[3];
-    Links links;
-    for (std::sregex_iterator child(children.begin(), children.end(), name), end; child != end; ++child)
-      links.insert(link(cells[2], (*child)[1].matched ? (*child)[1].str() : "camera_color_optical_frame"));
-    if (links.empty()) links.insert(cells[2]);
-    for (std::sregex_iterator each(topics.begin(), topics.end(), topic), end; each != end; ++each)
-      table[(*each)[1]].insert(links.begin(), links.end());
-  }
-  return table;
 }
 
 /// A filter before one slam service, and everything that ROS 2 programs receive of it.
@@ -206,7 +180,7 @@ TEST_F(FramesOfMaps, never_change_over_loss_merge_reset_and_load) {
 
   EXPECT_EQ(stop(), service::kOk);
   expect_one_tree();
-  const std::map<std::string, Links> table = table_of_frames();
+  const std::map<std::string, Links> table = test_support::table_of_frames();
   for (const auto& [topic, links] : seen()) {
     ASSERT_TRUE(table.contains(topic)) << topic << " is not in the table";
     for (const std::string& each : links) EXPECT_THAT(table.at(topic), testing::Contains(each)) << topic;

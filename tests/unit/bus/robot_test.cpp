@@ -23,6 +23,8 @@ TEST(Robot, with_a_name_topics_and_frames_are_below_it) {
   EXPECT_EQ(topic_of_robot("rtd/frame", "anna"), "rtd/anna/frame");
   EXPECT_EQ(topic_of_robot("rt/slam/odometry", "anna"), "rt/anna/slam/odometry");
   EXPECT_EQ(topic_of_robot("rt/camera/color/image_raw/compressed", "b_2"), "rt/b_2/camera/color/image_raw/compressed");
+  EXPECT_EQ(topic_of_robot("rt/map", "anna"), "rt/anna/map");
+  EXPECT_EQ(topic_of_robot("rt/map_server/plan", "anna"), "rt/map_server/plan");
   EXPECT_EQ(frame_of_robot("odom", "anna"), "anna/odom");
 }
 
