@@ -73,7 +73,8 @@ std::shared_ptr<BusBackend> create_cyclonedds(const BusOptions& options) {
 /// A new vendor is a folder beside this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
-    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus, true},
+    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus,
+     true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
     {"cyclonedds", create_cyclonedds, cyclonedds::create_raw_bus, true},

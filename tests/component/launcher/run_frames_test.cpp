@@ -13,9 +13,9 @@
 namespace rtd::launcher {
 namespace {
 
+using test_support::Links;
 using ::testing::Contains;
 using ::testing::IsSupersetOf;
-using test_support::Links;
 
 std::string dds_type(const std::string& plain) {
   const std::size_t slash = plain.find('/');
