@@ -83,6 +83,13 @@ HostAddress resolve_host(const std::string& text, const std::string& option) {
   return host;
 }
 
+std::vector<std::string> host_addresses() {
+  std::vector<std::string> addresses;
+  for (const auto& [name, address] : network_interfaces())
+    if (!is_bridge(name)) addresses.push_back(address);
+  return addresses;
+}
+
 std::vector<std::string> interface_addresses(const NetworkOptions& network) {
   if (network.loopback_only) return {};
   const std::vector<Interface> present = network_interfaces();
@@ -95,8 +102,7 @@ std::vector<std::string> interface_addresses(const NetworkOptions& network) {
       throw BusError("--interface " + asked + ": not up or without an IPv4 address; there are " + listed(present));
   }
   if (!network.interfaces.empty()) return addresses;
-  for (const auto& [name, address] : present)
-    if (!is_bridge(name)) addresses.push_back(address);
+  addresses = host_addresses();
   if (addresses.empty())
     throw BusError("no network interface is up: connect this host, name a bridge with --interface (there are: " +
                    listed(present) + "), or use --profile localhost");

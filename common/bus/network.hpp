@@ -38,6 +38,9 @@ HostAddress resolve_host(const std::string& text, const std::string& option);
 /// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
 std::vector<std::string> interface_addresses(const NetworkOptions& network);
 
+/// IPv4 addresses of this host's interfaces that are up, but loopback and bridges. Empty when there are none.
+std::vector<std::string> host_addresses();
+
 /// Whether an interface of this host has this IPv4 address.
 bool is_own_address(const std::string& address);
 

@@ -35,30 +35,40 @@ std::string interface(const std::string& address, const std::string& attributes)
 
 /// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1. Peers are asked through the
 /// interface of the highest priority, whatever their address: by default that is loopback, from where no other host
-/// is reached.
-std::string interfaces(const NetworkOptions& network) {
-  std::vector<std::string> addresses = interface_addresses(network);
+/// is reached. Of two addresses of a process of this host Cyclone DDS takes that of loopback, so that ours go on when
+/// the network is gone.
+std::string interfaces(const NetworkOptions& network, const std::vector<std::string>& local_addresses) {
+  std::vector<std::string> addresses = network.loopback_only ? local_addresses : interface_addresses(network);
   if (addresses.size() >= kMaxInterfaces && !network.interfaces.empty()) {
     throw BusError("--interface: Cyclone DDS uses at most " + std::to_string(kMaxInterfaces - 1) + ", " +
                    std::to_string(addresses.size()) + " are named");
   }
   addresses.resize(std::min(addresses.size(), kMaxInterfaces - 1));
-  std::string all = interface("127.0.0.1", network.multicast ? R"(multicast="true")" : R"(multicast="false")");
+  const std::string first = R"( priority="10")";
+  std::string all = interface("127.0.0.1", (network.multicast ? R"(multicast="true")" : R"(multicast="false")") +
+                                               (network.loopback_only ? first : std::string()));
   for (const std::string& address : addresses)
-    all += interface(address,
-                     network.multicast ? R"(multicast="default" priority="10")" : R"(multicast="false" priority="10")");
+    all += interface(address, (network.multicast ? R"(multicast="default")" : R"(multicast="false")") +
+                                  (network.loopback_only ? std::string() : first));
   return element("Interfaces", all);
 }
 
-std::string general(const BusOptions& options) {
+/// A time to live of 0 keeps multicast on this host. Others join its groups on the interfaces of the network, where
+/// ours need not.
+std::string multicast(const NetworkOptions& network, bool stays_on_host) {
+  if (!network.multicast) return element("AllowMulticast", "false");
+  // Only discovery by multicast: data sent so would reach, and wake, every process of the domain.
+  const std::string discovery_only = element("AllowMulticast", "spdp"),
+                    receive = "MulticastRecvNetworkInterfaceAddresses";
+  if (stays_on_host) return discovery_only + element("MulticastTimeToLive", "0") + element(receive, "127.0.0.1");
+  return discovery_only + (network.loopback_only ? std::string() : element(receive, "all"));
+}
+
+std::string general(const BusOptions& options, const std::vector<std::string>& local_addresses) {
   const std::uint32_t datagram = std::clamp(options.network.max_datagram_bytes, kLeastDatagram, kLargestDatagram);
   const std::uint32_t overhead = options.security.enabled() ? kSecureOverhead : kOverhead;
-  // Only discovery by multicast: data sent so would reach, and wake, every process of the domain.
   return element("General",
-                 interfaces(options.network) + element("AllowMulticast", options.network.multicast ? "spdp" : "false") +
-                     (options.network.loopback_only || !options.network.multicast
-                          ? std::string()
-                          : element("MulticastRecvNetworkInterfaceAddresses", "all")) +
+                 interfaces(options.network, local_addresses) + multicast(options.network, !local_addresses.empty()) +
                      element("MaxMessageSize", bytes(datagram)) + element("FragmentSize", bytes(datagram - overhead)));
 }
 
@@ -95,8 +105,9 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
 
 }  // namespace
 
-std::string domain_config(const BusOptions& options, const HostLimits& limits, DiscoveryPort port) {
-  std::string text = general(options) + discovery(options.network, port) + internal(options, limits);
+std::string domain_config(const BusOptions& options, const HostLimits& limits, DiscoveryPort port,
+                          const std::vector<std::string>& local_addresses) {
+  std::string text = general(options, local_addresses) + discovery(options.network, port) + internal(options, limits);
   // The trace of discovery goes to UnmatchedWatch; the file is only to be one that can be opened.
   if (options.security.enabled())
     text += element("Tracing", element("Category", "discovery") + element("OutputFile", "/dev/null"));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/bus/host/host_checks.hpp"
 
@@ -11,10 +12,12 @@ namespace rtd::bus::cyclonedds {
 /// Where a process is asked for: at one of the ports of kPeerParticipants, or only by multicast, at any port.
 enum class DiscoveryPort { kOfPeers, kAny };
 
-/// Cyclone's configuration of a domain, as XML. Throws BusError: an interface or peer that is none
-/// (common/bus/network.hpp).
+/// Cyclone's configuration of a domain, as XML. `local_addresses`: of this host, at which programs of this host are
+/// answered in a domain that is kept to it; multicast does not leave the host then, and the caller sees to it that
+/// nothing comes in (local_sockets.hpp). Throws BusError: an interface or peer that is none (common/bus/network.hpp).
 std::string domain_config(const BusOptions& options, const HostLimits& limits,
-                          DiscoveryPort port = DiscoveryPort::kOfPeers);
+                          DiscoveryPort port = DiscoveryPort::kOfPeers,
+                          const std::vector<std::string>& local_addresses = {});
 
 /// Throws BusError when no iox-roudi answers on this host: without it iceoryx waits for 60 s and then ends the process.
 /// `socket`: where it listens; for tests.

@@ -5,12 +5,14 @@
 #include <dds/ddsrt/log.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "common/bus/cyclonedds/domain_config.hpp"
+#include "common/bus/cyclonedds/local_sockets.hpp"
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
 #include "common/security/keystore_layout.hpp"
@@ -30,6 +32,14 @@ std::string text_of(const dds_log_data_t& line) {
   return text;
 }
 
+/// That a domain of this process is kept to this host: that its network takes no multicast, while the cable is out, is
+/// no loss then.
+std::atomic<bool> kept_to_host{false};
+
+bool is_no_loss(const std::string& line) {
+  return kept_to_host && line.find("write to udp/239.255.0.1:") != std::string::npos;
+}
+
 /// Cyclone calls its sink from any thread, one call at a time or not.
 struct Limit {
   std::mutex mutex;
@@ -39,6 +49,8 @@ struct Limit {
 
 void print_some(void* self, const dds_log_data_t* line) {
   Limit& limit = *static_cast<Limit*>(self);
+  const std::string text = text_of(*line);
+  if (is_no_loss(text)) return;
   const std::lock_guard lock(limit.mutex);
   const Clock::time_point now = Clock::now();
   if (now - limit.begin > kPeriod) {
@@ -48,7 +60,7 @@ void print_some(void* self, const dds_log_data_t* line) {
     limit.begin = now;
     limit.lines = 0;
   }
-  if (++limit.lines <= kLinesAtOnce) std::fprintf(stderr, "Cyclone DDS: %s\n", text_of(*line).c_str());
+  if (++limit.lines <= kLinesAtOnce) std::fprintf(stderr, "Cyclone DDS: %s\n", text.c_str());
 }
 
 /// Captures Cyclone's errors while it lives: they say why a call failed. Otherwise Cyclone's warnings and errors go to
@@ -86,13 +98,31 @@ std::mutex& domains_mutex() {
   return mutex;
 }
 
+/// A domain that is kept to this host is at all its addresses, where nothing comes in from elsewhere. Where the kernel
+/// does not see to that, it is at loopback alone, and only programs that announce loopback are found.
+dds_entity_t create_at(const BusOptions& options, const HostLimits& limits, DiscoveryPort port) {
+  const std::vector<std::string> addresses =
+      options.network.loopback_only && LocalSockets::available() ? host_addresses() : std::vector<std::string>();
+  if (!addresses.empty()) {
+    const LocalSockets sockets;
+    const dds_entity_t domain =
+        dds_create_domain(options.domain, domain_config(options, limits, port, addresses).c_str());
+    if (domain >= 0 && sockets.bound() > 0) {
+      kept_to_host = true;
+      return domain;
+    }
+    if (domain >= 0) dds_delete(domain);
+  }
+  return dds_create_domain(options.domain, domain_config(options, limits, port).c_str());
+}
+
 /// When all ports that peers ask are taken, multicast still finds us.
 std::shared_ptr<Domain> create_domain(const BusOptions& options, const HostLimits& limits, const std::string& config) {
   if (options.iceoryx) require_roudi();
   const LogCapture log;
-  dds_entity_t handle = dds_create_domain(options.domain, config.c_str());
+  dds_entity_t handle = create_at(options, limits, DiscoveryPort::kOfPeers);
   if (handle < 0 && !takes_participant_port(options) && free_participant_ports(options.domain) == 0)
-    handle = dds_create_domain(options.domain, domain_config(options, limits, DiscoveryPort::kAny).c_str());
+    handle = create_at(options, limits, DiscoveryPort::kAny);
   if (handle < 0) {
     throw BusError("Cyclone DDS refused to join domain " + std::to_string(options.domain) + " (" +
                    dds_strretcode(handle) + ")" + log.reason() + "; " + kMayBeRefused);

@@ -104,11 +104,6 @@ std::string Ros2Feed::without_publisher() const {
   }
   const std::string where = fmt::format("it has no publisher in DDS domain {}", domain_);
   if (!images.empty()) return fmt::format("{}; images are published on {}", where, fmt::join(images, ", "));
-  if (loopback_only_ && bus_->vendor() == "cyclonedds")
-    return fmt::format(
-        "{}, as far as Cyclone DDS sees: on loopback alone it finds no program that uses the network, as ROS 2 does by "
-        "default. Use --dds fastdds, or --profile lan",
-        where);
   return fmt::format("{}{}, and neither has any image topic; does the driver run, and in this ROS_DOMAIN_ID?", where,
                      loopback_only_ ? " on this host (--profile lan: also on the network)" : "");
 }

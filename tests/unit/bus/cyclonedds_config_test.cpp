@@ -19,9 +19,19 @@ const HostLimits kLimits{0, 0, 4'194'304, 212'992};
 
 TEST(CycloneConfig, keeps_to_loopback_with_multicast_for_discovery_only) {
   EXPECT_THAT(domain_config({}, kLimits),
-              AllOf(HasSubstr(R"(<NetworkInterface address="127.0.0.1" multicast="true"/></Interfaces>)"),
-                    HasSubstr("<AllowMulticast>spdp</AllowMulticast>"),
+              AllOf(HasSubstr(R"(<NetworkInterface address="127.0.0.1" multicast="true" priority="10"/></Interfaces>)"),
+                    Not(HasSubstr("MulticastTimeToLive")), HasSubstr("<AllowMulticast>spdp</AllowMulticast>"),
                     HasSubstr(R"(<Peers><Peer address="127.0.0.1"/></Peers>)"), Not(HasSubstr("SharedMemory"))));
+}
+
+TEST(CycloneConfig, sends_no_multicast_into_a_network_that_only_this_host_uses) {
+  EXPECT_THAT(
+      domain_config({}, kLimits, DiscoveryPort::kOfPeers, {"192.0.2.7", "192.0.2.8", "192.0.2.9", "192.0.2.10"}),
+      AllOf(HasSubstr(R"(<NetworkInterface address="127.0.0.1" multicast="true" priority="10"/>)"),
+            HasSubstr(R"(<NetworkInterface address="192.0.2.7" multicast="default"/>)"),
+            HasSubstr(R"(<NetworkInterface address="192.0.2.9" multicast="default"/></Interfaces>)"),
+            HasSubstr("<MulticastTimeToLive>0</MulticastTimeToLive>"),
+            HasSubstr("<MulticastRecvNetworkInterfaceAddresses>127.0.0.1</")));
 }
 
 TEST(CycloneConfig, takes_a_port_that_peers_ask_or_any) {
