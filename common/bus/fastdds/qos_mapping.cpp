@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/qos_mapping.hpp"
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "common/bus/fastdds/codec.hpp"
+#include "common/bus/network.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -13,6 +18,16 @@ Duration_t milliseconds(int ms) {
 
 /// A lost sample is noticed and repaired within some ms, not after Fast DDS's default 3 s.
 constexpr int kHeartbeatPeriodMs = 10, kResponseDelayMs = 1;
+
+/// Rings of frames are shared with processes of this host that have the same version of Fast DDS and this function.
+/// Fast DDS itself also shares them with any other version (one of Debian 12 in a container beside one of Debian 13),
+/// which lays the memory out differently: the process that opens it aborts.
+void share_memory(dds::DataSharingQosPolicy& policy) {
+  const std::string host = host_partition();  // "host-" and 16 hexadecimal digits
+  const std::uint64_t hash = std::stoull(host.substr(host.size() - 16), nullptr, 16);
+  const auto id = static_cast<std::uint16_t>(hash ^ hash >> 16U ^ hash >> 32U ^ hash >> 48U ^ kVersion);
+  policy.automatic(std::vector<std::uint16_t>{id});
+}
 
 /// What DataWriterQos and DataReaderQos have in common.
 template <class Qos>

@@ -13,6 +13,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastdds/rtps/writer/WriterDiscoveryInfo.h>
+#include <fastrtps/config.h>
 #include <fastrtps/utils/IPLocator.h>
 #include <fastrtps/xmlparser/XMLProfileManager.h>
 
@@ -42,6 +43,8 @@ using eprosima::fastrtps::c_TimeInfinite;
 using eprosima::fastrtps::Duration_t;
 
 inline constexpr char kShmPrefix[] = "fastrtps";
+inline constexpr std::uint64_t kVersion =
+    10'000 * FASTRTPS_VERSION_MAJOR + 100 * FASTRTPS_VERSION_MINOR + FASTRTPS_VERSION_MICRO;
 
 inline bool succeeded(const eprosima::fastrtps::types::ReturnCode_t& code) {
   return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
@@ -173,11 +176,6 @@ inline void add_discovery_server(rtps::BuiltinAttributes& builtin, const rtps::L
   server.ReadguidPrefix(prefix);
   server.metatrafficUnicastLocatorList.push_back(address);
   builtin.discovery_config.m_DiscoveryServers.push_back(server);
-}
-
-/// With all of this host.
-inline void share_memory(dds::DataSharingQosPolicy& policy) {
-  policy.automatic();
 }
 
 /// Between participants of one process.

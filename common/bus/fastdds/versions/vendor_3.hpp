@@ -24,7 +24,6 @@
 
 #include "common/bus/fastdds/versions/discovery_events.hpp"
 #include "common/bus/fastdds/versions/type_functions.hpp"
-#include "common/bus/network.hpp"
 
 /// Fast DDS 3.
 namespace rtd::bus::fastdds {
@@ -38,6 +37,8 @@ using PublicationData = rtps::PublicationBuiltinTopicData;
 using DiscoveryProtocol = rtps::DiscoveryProtocol;
 
 inline constexpr char kShmPrefix[] = "fastdds";
+inline constexpr std::uint64_t kVersion =
+    10'000 * FASTDDS_VERSION_MAJOR + 100 * FASTDDS_VERSION_MINOR + FASTDDS_VERSION_MICRO;
 
 inline bool succeeded(dds::ReturnCode_t code) {
   return code == dds::RETCODE_OK;
@@ -146,16 +147,6 @@ inline void set_representations(dds::DataReaderQos& qos, std::vector<dds::DataRe
 
 inline void add_discovery_server(rtps::BuiltinAttributes& builtin, const rtps::Locator_t& address, const char*) {
   builtin.discovery_config.m_DiscoveryServers.push_back(address);
-}
-
-/// With those of this host that have the same version. Another one (Fast DDS 2.9 of Debian 12 in a container beside one
-/// of Debian 13) lays the memory out differently: the process that opens it aborts.
-inline void share_memory(dds::DataSharingQosPolicy& policy) {
-  const std::string host = host_partition();  // "host-" and 16 hexadecimal digits
-  const std::uint64_t hash = std::stoull(host.substr(host.size() - 16), nullptr, 16);
-  const std::uint64_t version = 10'000 * FASTDDS_VERSION_MAJOR + 100 * FASTDDS_VERSION_MINOR + FASTDDS_VERSION_MICRO;
-  const auto id = static_cast<std::uint16_t>(hash ^ hash >> 16U ^ hash >> 32U ^ hash >> 48U ^ version);
-  policy.automatic(std::vector<std::uint16_t>{id});
 }
 
 /// Between participants of one process.
