@@ -1,11 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
-#include <fastdds/dds/domain/DomainParticipant.hpp>
-#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
 #include <fastdds/dds/subscriber/DataReader.hpp>
@@ -13,22 +7,24 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <stdexcept>
 
+#include "common/bus/fastdds/versions/vendor.hpp"
 #include "geometry_msgsPubSubTypes.h"
 #include "tests/interop/bus/rmw_double.hpp"
 
 namespace rtd::test_support {
 namespace {
 
-namespace dds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
+namespace dds = bus::fastdds::dds;
+namespace rtps = bus::fastdds::rtps;
+namespace transports = bus::fastdds::transports;
 
 /// Humble: UDP on loopback only.
 void keep_to_loopback(dds::DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<transports::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().user_transports.push_back(udp);
-  qos.transport().user_transports.push_back(std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>());
+  qos.transport().user_transports.push_back(std::make_shared<transports::SharedMemTransportDescriptor>());
 }
 
 /// Iron and later: no multicast; loopback is asked at the first ports.
@@ -54,7 +50,7 @@ class FastDouble final : public RmwDouble {
     if (setting == "localhost_only=1") keep_to_loopback(qos);
     if (setting == "LOCALHOST") ask_loopback(qos);
     if (setting == "OFF")
-      qos.wire_protocol().builtin.discovery_config.discoveryProtocol = rtps::DiscoveryProtocol_t::NONE;
+      qos.wire_protocol().builtin.discovery_config.discoveryProtocol = bus::fastdds::DiscoveryProtocol::NONE;
     participant_ = required(dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos));
     type_.register_type(participant_);
     dds::DataWriterQos writing = dds::DATAWRITER_QOS_DEFAULT;
@@ -79,8 +75,7 @@ class FastDouble final : public RmwDouble {
     int taken = 0;
     geometry_msgs::msg::dds_::PoseStamped_ pose;
     dds::SampleInfo info;
-    while (reader_->take_next_sample(&pose, &info) == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK)
-      taken += info.valid_data ? 1 : 0;
+    while (bus::fastdds::succeeded(reader_->take_next_sample(&pose, &info))) taken += info.valid_data ? 1 : 0;
     return taken;
   }
 
