@@ -69,6 +69,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kFrame1280.name, {"camera"}, kFrameReaders},
       {kFrame1920.name, {"camera"}, kFrameReaders},
       {kColorJpeg.name, {"camera", "link"}, Roles{"detector"} + kOnlookers},
+      {kDepthJpeg.name, {"camera"}, kOnlookers},
       {kCameraInfo.name, {"camera", "link"}, kOnlookers},
       {kGroundTruth.name, {"camera"}, kOnlookers},
       {msg::kImuTopic, {"camera"}, Roles{"slam"} + kOnlookers},

@@ -28,6 +28,9 @@ inline constexpr Topic<msg::Movers> kMovers{"rtd/movers", QosProfile::kDetection
 inline constexpr Topic<msg::ServiceStatus> kStatus{"rtd/status", QosProfile::kHeartbeat};
 inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed",
                                                         QosProfile::kNetworkFrame};
+/// Depth as colours, for people.
+inline constexpr Topic<msg::CompressedImage> kDepthJpeg{"rt/camera/depth/preview/compressed",
+                                                        QosProfile::kNetworkFrame};
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
 inline constexpr Topic<msg::PoseStamped> kGroundTruth{"rt/camera/ground_truth", QosProfile::kPose};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};

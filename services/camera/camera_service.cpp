@@ -303,7 +303,7 @@ void CameraService::note(std::uint64_t seq) {
 
 void CameraService::send(const vision::RgbdImage& image) {
   ++published_;
-  if (realtime_) publisher_.jpegs().limit_rate(service::asked_load_step(runtime_.heartbeat).max_jpeg_hz);
+  if (realtime_) publisher_.limit_jpeg_rate(service::asked_load_step(runtime_.heartbeat).max_jpeg_hz);
   if (publisher_.publish(image)) return;
   ++refused_;
   if (refused_log_.pass()) SPDLOG_WARN("event=frame_refused frame={} total={}", image.seq, refused_);

@@ -20,11 +20,13 @@
 #include "common/ros_codec/wire.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"
+#include "services/camera/core/depth_colors.hpp"
 
 namespace rtd::camera {
 namespace {
 
 constexpr std::size_t kMaxWaiting = 2;
+constexpr int kDepthQuality = 85;
 constexpr int kNicer = 5;  // than the filter and slam, and before the detector
 
 /// Niceness orders no real-time threads: in a process that was started as such this one leaves them.
@@ -48,8 +50,8 @@ bus::StatusCallbacks on_match(const std::function<void()>& notify) {
 }  // namespace
 
 JpegPublisher::JpegPublisher(bus::Bus& bus, int quality, concurrency::Overflow overflow,
-                             const std::function<void()>& on_matched)
-    : writer_(bus.writer(bus::topics::kColorJpeg, on_match(on_matched))),
+                             const std::function<void()>& on_matched, const bus::Topic<msg::CompressedImage>& topic)
+    : writer_(bus.writer(topic, on_match(on_matched))),
       quality_(quality),
       waiting_(kMaxWaiting, overflow),
       thread_([this] {
@@ -62,21 +64,21 @@ JpegPublisher::~JpegPublisher() {
   thread_.join();
 }
 
-void JpegPublisher::offer(const cv::Mat& color_bgr, std::int64_t stamp_ns, const std::string& frame_id) {
+void JpegPublisher::offer(Draw draw, std::int64_t stamp_ns, const std::string& frame_id) {
   if (writer_.matched() == 0) return;
   constexpr double kEarly = 0.9;  // of the period: stamps jitter
   const bool too_soon =
       max_hz_ > 0 && stamp_ns > offered_ns_ && static_cast<double>(stamp_ns - offered_ns_) < kEarly * 1e9 / max_hz_;
   if (too_soon) return;
   offered_ns_ = stamp_ns;
-  waiting_.push({color_bgr, {msg::to_time(stamp_ns), frame_id}});
+  waiting_.push({std::move(draw), {msg::to_time(stamp_ns), frame_id}});
 }
 
 void JpegPublisher::publish(const Waiting& image) {
   msg::CompressedImage message;
   message.header = image.header;
   message.format = "bgr8; jpeg compressed bgr8";
-  message.data = vision::encode_jpeg(image.color_bgr, quality_);
+  message.data = vision::encode_jpeg(image.draw(), quality_);
   if (message.data.empty()) return;
   ++encoded_;
   writer_.write(message);
@@ -95,7 +97,16 @@ FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Ove
       source_id_(random_id()),
       frame_id_(bus.frame(kCameraFrame)),
       infos_(bus.writer(bus::topics::kCameraInfo)),
-      jpegs_(bus, jpeg_quality, jpeg_overflow, on_matched_) {}
+      jpegs_(bus, jpeg_quality, jpeg_overflow, on_matched_),
+      depths_(bus, kDepthQuality, jpeg_overflow, {}, bus::topics::kDepthJpeg) {
+  limit_jpeg_rate(0);
+}
+
+void FramePublisher::limit_jpeg_rate(double max_hz) {
+  constexpr double kMostDepths_hz = 10;
+  jpegs_.limit_rate(max_hz);
+  depths_.limit_rate(max_hz > 0 ? std::min(max_hz, kMostDepths_hz) : kMostDepths_hz);
+}
 
 void FramePublisher::open(cv::Size size_px) {
   frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
@@ -109,6 +120,8 @@ bool FramePublisher::publish(const vision::RgbdImage& image) {
   if (image.color_bgr.size() != size_px_) open(image.color_bgr.size());
   const bool taken = frames_.write([&](auto& frame) { fill_frame(image, source_id_, service::monotonic_ns(), frame); });
   jpegs_.offer(image.color_bgr, image.stamp_ns, frame_id_);
+  depths_.offer([depth = image.depth, scale_m = image.depth_scale_m] { return depth_preview(depth, scale_m); },
+                image.stamp_ns, frame_id_);
   if (!std::exchange(info_sent_, true) || infos_.matched() > 0) {
     infos_.write(to_camera_info(image.camera, image.stamp_ns, frame_id_));
   }

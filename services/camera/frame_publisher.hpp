@@ -27,16 +27,23 @@ namespace rtd::camera {
 /// that a reader of the JPEG topic delays no pose. offer(): one thread.
 class JpegPublisher {
  public:
+  /// Makes the image (8-bit BGR) in the publisher's thread.
+  using Draw = std::function<cv::Mat()>;
   /// `overflow`: what happens to an image while two others wait to be encoded. `on_matched`: as FramePublisher's.
   JpegPublisher(bus::Bus& bus, int quality, concurrency::Overflow overflow,
-                const std::function<void()>& on_matched = {});
+                const std::function<void()>& on_matched = {},
+                const bus::Topic<msg::CompressedImage>& topic = bus::topics::kColorJpeg);
   /// Publishes what still waits.
   ~JpegPublisher();
   JpegPublisher(const JpegPublisher&) = delete;
   JpegPublisher& operator=(const JpegPublisher&) = delete;
 
-  /// Takes an image (8-bit BGR, shared: not to be changed any more) if the topic has readers.
-  void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns, const std::string& frame_id = msg::kCameraFrame);
+  /// Takes an image if the topic has readers; what `draw` holds is not to be changed any more.
+  void offer(Draw draw, std::int64_t stamp_ns, const std::string& frame_id = msg::kCameraFrame);
+  /// An image that is drawn already, shared.
+  void offer(const cv::Mat& color_bgr, std::int64_t stamp_ns, const std::string& frame_id = msg::kCameraFrame) {
+    offer([color_bgr] { return color_bgr; }, stamp_ns, frame_id);
+  }
   /// Images beyond this rate, by their stamps, are left out from now on; 0 = no limit. The thread of offer().
   void limit_rate(double max_hz) { max_hz_ = max_hz; }
   int readers() const { return writer_.matched(); }
@@ -47,7 +54,7 @@ class JpegPublisher {
 
  private:
   struct Waiting {
-    cv::Mat color_bgr;
+    Draw draw;
     msg::Header header;
   };
   void publish(const Waiting& image);
@@ -127,8 +134,8 @@ void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::in
   copy_packed(image.depth, reinterpret_cast<std::uint8_t*>(frame.depth.data()), sizeof frame.depth);
 }
 
-/// Publishes frames: raw by loan, as JPEG while that topic has readers (in another thread, a little later), and the
-/// camera's calibration. One thread.
+/// Publishes frames: raw by loan, colour and a picture of the depth as JPEG while these topics have readers (in other
+/// threads, a little later), and the camera's calibration. One thread.
 class FramePublisher {
  public:
   /// `jpeg_overflow`: what happens when JPEGs are wanted faster than they can be encoded. `on_matched` is called on a
@@ -147,7 +154,8 @@ class FramePublisher {
   int frame_readers() const { return frames_.matched(); }
   int jpeg_readers() const { return jpegs_.readers(); }
   const JpegPublisher& jpegs() const { return jpegs_; }
-  JpegPublisher& jpegs() { return jpegs_; }
+  /// JPEGs a second at most, 0 = every frame's; of the depth no more than 10 in any case.
+  void limit_jpeg_rate(double max_hz);
 
  private:
   bus::Bus& bus_;
@@ -158,7 +166,7 @@ class FramePublisher {
   bus::Writer<msg::CameraInfo> infos_;
   bool info_sent_ = false;
   cv::Size size_px_;
-  JpegPublisher jpegs_;
+  JpegPublisher jpegs_, depths_;
 };
 
 }  // namespace rtd::camera

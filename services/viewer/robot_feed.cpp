@@ -96,7 +96,7 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
   if (options == options_) return;
   options_ = options;
   using namespace bus::topics;
-  const PageOptions wanted = options.value_or(PageOptions{false, false, false, false, false, false, false, false});
+  const PageOptions wanted = options.value_or(PageOptions::nothing());
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
   read(movers_, kMovers, options.has_value(),
        [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
@@ -114,6 +114,8 @@ void RobotFeed::set_options(const std::optional<PageOptions>& options) {
        [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(CloudKind::kStatic, cloud); });
   read(moving_, kMovingPoints, wanted.moving,
        [](RobotMirror& to, const msg::PointCloud2& cloud) { to.add(CloudKind::kMoving, cloud); });
+  read(depths_, kDepthJpeg, wanted.depth,
+       [](RobotMirror& to, const msg::CompressedImage& picture) { to.add_depth(picture); });
   read(plan_, kOccupancyGrid, wanted.plan, [](RobotMirror& to, const msg::OccupancyGrid& plan) { to.add(plan); });
 }
 

@@ -48,7 +48,7 @@ class RobotFeed {
   bus::Reader<msg::MapUpdate> map_;
   bus::Reader<msg::Movers> movers_;
   bus::Reader<msg::PoseStamped> truth_;
-  bus::Reader<msg::CompressedImage> images_;
+  bus::Reader<msg::CompressedImage> images_, depths_;
   bus::Reader<msg::FeatureFrame> features_;
   bus::Reader<msg::Detection2DArray> detections_;
   bus::Reader<msg::Image> masks_, people_;

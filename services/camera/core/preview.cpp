@@ -8,6 +8,8 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "services/camera/core/depth_colors.hpp"
+
 namespace rtd::camera {
 namespace {
 
@@ -121,12 +123,8 @@ cv::Mat Preview::picture() const {
   double nearest = 0, farthest = 0;
   const cv::Mat measured = depth_ > 0;
   cv::minMaxLoc(depth_, &nearest, &farthest, nullptr, nullptr, measured);
-  const double range = std::max(1.0, farthest - nearest);
-  cv::Mat grey, colors, both;
-  depth_.convertTo(grey, CV_8UC1, -255 / range, 255 * farthest / range);
-  cv::applyColorMap(grey, colors, cv::COLORMAP_JET);
-  colors.setTo(cv::Scalar::all(0), depth_ == 0);
-  cv::hconcat(color_, colors, both);
+  cv::Mat both;
+  cv::hconcat(color_, depth_colors(depth_, nearest, farthest), both);
   return both;
 }
 

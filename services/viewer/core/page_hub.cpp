@@ -30,7 +30,7 @@ RobotMirror* PageHub::robot(const std::string& name) {
 
 std::optional<PageOptions> PageHub::options(std::uint8_t robot) const {
   if (sessions_.empty()) return std::nullopt;
-  PageOptions all{false, false, false, false, false, false};
+  PageOptions all = PageOptions::nothing();
   for (const PageSession* session : sessions_) all = all | session->options(robot);
   return all;
 }

@@ -17,11 +17,15 @@ namespace rtd::viewer {
 struct PageOptions {
   bool image = true, mask = true, features = true, points = true, dense = false, people = true;
   bool moving = false, plan = false;  ///< the dense points of what moved; the floor plan
+  bool depth = false;                 ///< a picture of the depth beside the image
   PageOptions operator|(const PageOptions& other) const {
-    return {image || other.image, mask || other.mask,     features || other.features, points || other.points,
-            dense || other.dense, people || other.people, moving || other.moving,     plan || other.plan};
+    return {image || other.image,   mask || other.mask,   features || other.features,
+            points || other.points, dense || other.dense, people || other.people,
+            moving || other.moving, plan || other.plan,   depth || other.depth};
   }
   bool operator==(const PageOptions&) const = default;
+  /// No page is open.
+  static PageOptions nothing() { return {false, false, false, false, false, false}; }
 };
 
 /// How much a page gets.

@@ -135,9 +135,9 @@ Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vect
   return writer.take();
 }
 
-Bytes image(std::uint8_t robot, const msg::CompressedImage& image) {
+Bytes image(std::uint8_t robot, const msg::CompressedImage& image, Kind kind) {
   const cv::Size size = vision::jpeg_size(image.data);
-  ByteWriter writer = begin(Kind::kImage, robot, 0, image.data.size());
+  ByteWriter writer = begin(kind, robot, 0, image.data.size());
   writer.put(seconds(image.header.stamp));
   writer.put(static_cast<std::uint32_t>(size.width));
   writer.put(static_cast<std::uint32_t>(size.height));

@@ -40,6 +40,7 @@ enum class Kind : std::uint8_t {
   kMoving = 14,
   kPlan = 15,
   kTrajectoryValues = 16,
+  kDepth = 17,
 };
 
 /// What every binary message begins with.
@@ -65,7 +66,8 @@ Bytes trajectory_values(std::uint8_t robot, std::uint32_t start, std::int64_t be
                         std::span<const TrajectoryPoint> points, std::span<const float> errors_m);
 Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vector3f> points_m);
 
-Bytes image(std::uint8_t robot, const msg::CompressedImage& image);
+/// `kind`: of the camera's image, or of the picture of its depth.
+Bytes image(std::uint8_t robot, const msg::CompressedImage& image, Kind kind = Kind::kImage);
 Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame);
 /// Runs of equal values. Empty for an image that is not mono8 of a plausible size.
 Bytes mask(std::uint8_t robot, const msg::Image& image);

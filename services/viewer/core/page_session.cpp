@@ -98,7 +98,8 @@ void PageSession::on_text(std::string_view message_text) {
     options_ = {flag(message, "image", options_.image),       flag(message, "mask", options_.mask),
                 flag(message, "features", options_.features), flag(message, "points", options_.points),
                 flag(message, "dense", options_.dense),       flag(message, "people", options_.people),
-                flag(message, "moving", options_.moving),     flag(message, "plan", options_.plan)};
+                flag(message, "moving", options_.moving),     flag(message, "plan", options_.plan),
+                flag(message, "depth", options_.depth)};
     const auto robot = message.find("robot");
     if (robot != message.end() && robot->is_number_unsigned()) watched_ = robot->get<std::uint64_t>();
   } else if (op == "call") {
@@ -116,6 +117,7 @@ PageOptions PageSession::options(std::uint8_t robot) const {
   PageOptions options = options_;
   if (watched_ && *watched_ != robot) options.image = options.mask = options.features = false;
   options.people = options.people && options.image;
+  options.depth = options.depth && options.image;
   return options;
 }
 
@@ -309,11 +311,13 @@ void PageSession::choose_parts(const View& view, const PageOptions& wanted, Sent
     bool wanted, is_text;
     const Payload& payload;
   };
-  const std::array<Part, 5> parts = {{{wanted.image, false, view.image},
-                                      {wanted.image, true, view.boxes},
-                                      {wanted.people, false, view.people},
-                                      {wanted.mask, false, view.mask},
-                                      {wanted.features, false, view.features}}};
+  const std::array<Part, std::tuple_size_v<decltype(sent.view_parts)>> parts = {
+      {{wanted.image, false, view.image},
+       {wanted.image, true, view.boxes},
+       {wanted.depth, false, view.depth},
+       {wanted.people, false, view.people},
+       {wanted.mask, false, view.mask},
+       {wanted.features, false, view.features}}};
   for (std::size_t place = 0; place < parts.size(); ++place) {
     const auto& [is_wanted, is_text, payload] = parts[place];
     if (!is_wanted || !payload || payload == sent.view_parts[place]) continue;

@@ -131,7 +131,7 @@ std::optional<double> TruthTrack::error_m(std::int64_t stamp_ns) const {
 
 std::size_t View::bytes() const {
   std::size_t bytes = 0;
-  for (const Payload& part : {image, features, mask, boxes, people}) bytes += part ? part->size() : 0;
+  for (const Payload& part : {image, features, mask, boxes, people, depth}) bytes += part ? part->size() : 0;
   return bytes;
 }
 
@@ -165,6 +165,10 @@ void RobotMirror::add(const msg::Image& mask) {
 void RobotMirror::add_people(const msg::Image& masks) {
   Bytes bytes = page::people(index_, masks);
   if (!bytes.empty()) keep(people_, to_ns(masks.header.stamp), shared(std::move(bytes)));
+}
+
+void RobotMirror::add_depth(const msg::CompressedImage& picture) {
+  keep(depths_, to_ns(picture.header.stamp), shared(page::image(index_, picture, page::Kind::kDepth)));
 }
 
 void RobotMirror::add(const msg::ServiceStatus& status, std::int64_t received_ns) {
@@ -285,6 +289,7 @@ std::optional<View> RobotMirror::newest_view() const {
   view.mask = at(masks_, view.stamp_ns, kSameFrameNs);
   view.boxes = at(boxes_, view.stamp_ns, kBoxesStayNs);
   view.people = at(people_, view.stamp_ns, kBoxesStayNs);
+  view.depth = at(depths_, view.stamp_ns, kBoxesStayNs);
   return view;
 }
 

@@ -76,7 +76,7 @@ inline constexpr std::size_t kCloudKinds = 2;
 /// An image with what the other services found in it. Parts that are missing are null.
 struct View {
   std::int64_t stamp_ns = 0;
-  Payload image, features, mask, boxes, people;
+  Payload image, features, mask, boxes, people, depth;
   std::size_t bytes() const;
 };
 
@@ -93,6 +93,8 @@ class RobotMirror {
   void add(const msg::Image& mask);
   /// The detector's person masks.
   void add_people(const msg::Image& masks);
+  /// The picture of the camera's depth.
+  void add_depth(const msg::CompressedImage& picture);
   void add(const msg::ServiceStatus& status, std::int64_t received_ns);
   void add(CloudKind kind, const msg::PointCloud2& cloud);
   void add(const msg::OccupancyGrid& plan);
@@ -147,7 +149,7 @@ class RobotMirror {
   const std::uint8_t index_;
   MapMirror map_;
   std::array<Message, kItems> items_;
-  Overlays images_, features_, masks_, boxes_, people_;
+  Overlays images_, features_, masks_, boxes_, people_, depths_;
   std::map<std::string, KnownService> services_;
   std::optional<std::array<float, msg::kFilterStages>> filter_stage_ms_;
   TruthTrack truth_;

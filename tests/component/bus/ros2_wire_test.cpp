@@ -69,6 +69,7 @@ TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2)
   };
   using namespace topics;
   check(kColorJpeg);
+  check(kDepthJpeg);
   check(kCameraInfo);
   check(kDetections);
   check(kPersonMasks);

@@ -258,6 +258,31 @@ TEST_F(CameraServiceTest, encodes_jpeg_while_the_topic_has_readers) {
   EXPECT_EQ(received_info.get().width, 64U);
 }
 
+TEST_F(CameraServiceTest, publishes_ten_small_pictures_of_the_depth_a_second_while_they_have_readers) {
+  std::vector<msg::CompressedImage> pictures;
+  std::mutex mutex;
+  const auto reader = bus_->reader<msg::CompressedImage>(bus::topics::kDepthJpeg, [&](const auto& message) {
+    const std::lock_guard lock(mutex);
+    pictures.push_back(*message);
+  });
+  vision::RgbdImage image = make_source(std::string(kTinyScene) + "1")->next()->image;
+  image.color_bgr = cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(9));
+  image.depth = cv::Mat(480, 640, CV_16UC1, cv::Scalar(2.0 / image.depth_scale_m));
+  {
+    FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
+    for (int i = 0; i < 30; ++i, image.stamp_ns += 33'333'333) publisher.publish(image);
+  }
+  const auto count = [&] {
+    const std::lock_guard lock(mutex);
+    return pictures.size();
+  };
+  wait_until([&] { return count() == 10; });
+  ASSERT_EQ(count(), 10U);
+  const cv::Mat picture = cv::imdecode(pictures.back().data, cv::IMREAD_COLOR);
+  EXPECT_EQ(picture.size(), cv::Size(320, 240));
+  EXPECT_LT(pictures.back().data.size(), 30'000U);
+}
+
 TEST_F(CameraServiceTest, does_not_encode_jpeg_without_readers) {
   FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
   const auto frame = make_source(std::string(kTinyScene) + "1")->next();

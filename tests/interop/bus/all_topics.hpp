@@ -30,6 +30,7 @@ void for_each_topic(Visitor visit) {
   visit(kTracking);
   visit(kStatus);
   visit(kColorJpeg);
+  visit(kDepthJpeg);
   visit(kCameraInfo);
   visit(kDetections);
   visit(kPersonMasks);

@@ -35,7 +35,8 @@ std::vector<TopicFacts> all_topics() {
           facts(kColorJpeg),    facts(kCameraInfo), facts(kDetections),    facts(kOdometry),    facts(kPose),
           facts(kTf),           facts(kPath),       facts(kMapPoints),     facts(kDiagnostics), facts(kDynamicMask),
           facts(kDensePoints),  facts(kMap),        facts(kMovers),        facts(kGroundTruth), facts(kMoverBoxes),
-          facts(kMoverMarkers), facts(kTfStatic),   facts(kOccupancyGrid), facts(kPersonMasks), facts(kMapJumps)};
+          facts(kMoverMarkers), facts(kTfStatic),   facts(kOccupancyGrid), facts(kPersonMasks), facts(kMapJumps),
+          facts(kDepthJpeg)};
 }
 
 TEST(Topics, have_names_of_their_own) {

@@ -76,7 +76,8 @@ std::string image_messages() {
                      hex(page::features(1, features())), hex(page::mask(1, mask())),
                      hex(page::dense(page::Kind::kDense, 1, 0, 1, {1, 2, 3}, 0.5F, points))) +
          fmt::format("moving {}\nplan {}\n", hex(page::dense(page::Kind::kMoving, 1, 0, 1, {1, 2, 3}, 0.5F, points)),
-                     hex(page::plan(1, floor_plan())));
+                     hex(page::plan(1, floor_plan()))) +
+         fmt::format("depth {}\n", hex(page::image(1, sample<msg::CompressedImage>(3), page::Kind::kDepth)));
 }
 
 std::string texts() {

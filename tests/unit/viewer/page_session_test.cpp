@@ -99,6 +99,20 @@ TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
   EXPECT_FALSE(again.contains("binary 1")) << "no keyframe has moved";
 }
 
+TEST_F(PageSessionTest, a_page_gets_the_depth_when_it_asks_for_it_and_shows_images) {
+  RobotMirror& robot = *hub.robot("");
+  robot.add(msg::CompressedImage{.data = {1, 2, 3}});
+  robot.add_depth({.data = {4, 5, 6}});
+  const auto page = hub.open();
+  EXPECT_FALSE(hub.options(0)->depth);
+  EXPECT_THAT(take(*page, kSecond), Not(Contains(::testing::Key("binary 17"))));
+  page->on_text(R"({"op":"options","depth":true})");
+  EXPECT_TRUE(hub.options(0)->depth);
+  EXPECT_THAT(take(*page, 2 * kSecond), Contains(::testing::Key("binary 17")));
+  page->on_text(R"({"op":"options","image":false})");
+  EXPECT_FALSE(hub.options(0)->depth) << "its panel is closed";
+}
+
 TEST_F(PageSessionTest, a_closed_loop_sends_poses_and_no_points) {
   RobotMirror& robot = *hub.robot("");
   robot.map().add(map_of(100, 200));

@@ -101,6 +101,17 @@ TEST(RobotMirror, a_filter_that_looks_at_other_images_does_not_hide_these) {
   EXPECT_NE(mirror.newest_view()->image, nullptr);
 }
 
+TEST(RobotMirror, depth_stays_for_a_moment_because_it_comes_less_often) {
+  RobotMirror mirror(0);
+  mirror.add(image(1000));
+  mirror.add_depth(image(1000));
+  EXPECT_EQ(at<std::uint8_t>(mirror.newest_view()->depth, 0), 17);
+  mirror.add(image(1100));
+  EXPECT_NE(mirror.newest_view()->depth, nullptr);
+  mirror.add(image(1500));
+  EXPECT_EQ(mirror.newest_view()->depth, nullptr);
+}
+
 json mover_message(double speed_mps, double sigma_mps) {
   msg::Movers movers;
   movers.movers.push_back({.velocity_mps = {speed_mps, 0, 0}});
