@@ -48,10 +48,10 @@ std::vector<TopicRoles> with_services(std::vector<TopicRoles> roles) {
     const char* server;
   };
   constexpr Command kCommands[] = {
-      {"slam/reset", "slam"},         {"slam/save_map", "slam"},     {"slam/load_map", "slam"},
-      {"slam/localize_only", "slam"}, {"filter/set_mode", "filter"}, {"recorder/start", "record"},
-      {"recorder/stop", "record"},    {"replay/pause", "replay"},    {"replay/step", "replay"},
-      {"replay/seek", "replay"},      {"replay/speed", "replay"}};
+      {"slam/reset", "slam"},         {"slam/save_map", "slam"},   {"slam/load_map", "slam"},
+      {"slam/localize_only", "slam"}, {"slam/ask", "slam"},        {"filter/set_mode", "filter"},
+      {"recorder/start", "record"},   {"recorder/stop", "record"}, {"replay/pause", "replay"},
+      {"replay/step", "replay"},      {"replay/seek", "replay"},   {"replay/speed", "replay"}};
   for (const Command& command : kCommands) add_service(roles, command.name, {command.server}, kCallers);
   for (const char* name : {"describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
                            "set_parameters", "set_parameters_atomically", "get_type_description"})

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/service/log.hpp"
+#include "services/slam/answers.hpp"
 #include "services/slam/core/store/map_format.hpp"
 #include "services/slam/map_file.hpp"
 
@@ -48,6 +49,8 @@ SlamCommands::SlamCommands(bus::Bus& bus, const MapFileConfig& files, const std:
                      [this](const CommandRequest& asked) { return load(asked.argument); });
   desk_.offer("slam/localize_only", CommandKind::kSetBool,
               [this](const CommandRequest& asked) { return localize_only(asked.argument == "true"); });
+  desk_.offer_beside("slam/ask", CommandKind::kText,
+                     [this](const CommandRequest& asked) { return ask(asked.argument); });
 }
 
 bus::CommandAnswer SlamCommands::reset() {
@@ -62,8 +65,7 @@ bus::CommandAnswer SlamCommands::reset() {
 bus::CommandAnswer SlamCommands::save(const std::string& name) {
   if (name.empty() && files_.save.empty()) return {false, "name a map: slam was started without --save-map"};
   const std::string file = name.empty() ? files_.save : maps_.to_write(name).string();
-  const SavedMap saved =
-      keeper_.save_to(file, name.empty() ? io::NamedBy::kOperator : io::NamedBy::kProgram);
+  const SavedMap saved = keeper_.save_to(file, name.empty() ? io::NamedBy::kOperator : io::NamedBy::kProgram);
   return {true, fmt::format("{} keyframes and {} landmarks, {:.1f} MB, saved to {}", saved.keyframes, saved.landmarks,
                             static_cast<double>(saved.bytes) * 1e-6, full_path(file))};
 }
@@ -89,6 +91,29 @@ bus::CommandAnswer SlamCommands::localize_only(bool on) {
   SPDLOG_INFO("event=localize_only on={}", on);
   return {true, on ? fmt::format("only localizing: the map of {} keyframes stays as it is", size.keyframes)
                    : "mapping: the map grows again"};
+}
+
+/// Computed here, beside tracking.
+bus::CommandAnswer SlamCommands::ask(const std::string& text) {
+  const std::optional<Question> question = parse_question(text);
+  if (!question) return {false, kQuestions};
+  std::string answer;
+  if (question->about == Question::About::kDoubt) {
+    PoseEvidence evidence;
+    desk_.run([&]() -> bus::CommandAnswer {
+      evidence = slam_.evidence();
+      return {};
+    });
+    if (evidence.frame == nullptr) return {false, "the last frame has no measured pose"};
+    answer = answer_doubt(evidence);
+  } else {
+    slam_.read_map([&](const Map& map) {
+      answer = question->about == Question::About::kLandmark ? answer_landmark(map, *question)
+                                                             : answer_keyframe(map, question->keyframe);
+    });
+  }
+  return answer.empty() ? bus::CommandAnswer{false, "the map has none there any more"}
+                        : bus::CommandAnswer{true, answer};
 }
 
 }  // namespace rtd::slam

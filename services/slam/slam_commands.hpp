@@ -13,8 +13,8 @@
 
 namespace rtd::slam {
 
-/// The commands slam/reset, slam/save_map, slam/load_map and slam/localize_only. Files are read and written beside
-/// tracking; what changes the system happens between two frames.
+/// The commands slam/reset, slam/save_map, slam/load_map, slam/localize_only and slam/ask. Files are read and written
+/// beside tracking; what changes the system happens between two frames.
 class SlamCommands {
  public:
   /// Takes the map over in the worker's thread; the answer's text when the camera does not fit, else empty.
@@ -34,6 +34,7 @@ class SlamCommands {
   bus::CommandAnswer save(const std::string& name);
   bus::CommandAnswer load(const std::string& name);
   bus::CommandAnswer localize_only(bool on);
+  bus::CommandAnswer ask(const std::string& text);
 
   const MapFileConfig files_;
   const io::NamedFiles maps_;

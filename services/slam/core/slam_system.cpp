@@ -84,7 +84,9 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   sensor.disparity_px_m = disparity_px_m();
   const FrameInput input = make_frame(message, sensor, shutter_);
   output.invalid_features = input.invalid;
+  evidence_ = {};
   const TrackOutcome outcome = mapping_.snapshot() == nullptr ? initialize(input, output) : track(input, output);
+  evidence_.raster_scale = msg::feature_scale(message.width, message.height);
   had_pose_ = msg::has_pose(outcome.state);
   if (outcome.map != nullptr) map_ = outcome.map->map;
   collect_events(output);
@@ -210,6 +212,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     if (outcome.tracked.frame != nullptr) record(outcome.tracked);
     return outcome;
   }
+  evidence_ = {outcome.tracked.frame, outcome.tracked.T_world_camera, outcome.inliers, std::move(outcome.rejected)};
   record(outcome.tracked);
   unsettled_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);

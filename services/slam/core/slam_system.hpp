@@ -15,6 +15,7 @@
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
 #include "services/slam/core/tracking/depth_weight.hpp"
+#include "services/slam/core/tracking/disagreement.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
 #include "services/slam/core/tracking/settling.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
@@ -97,6 +98,8 @@ class SlamSystem {
   std::vector<MapPoint> map_points(MapId id = 0) const;
   /// What viewers show of all maps.
   MapView map_view() const;
+  /// Of the last frame. The thread of process().
+  const PoseEvidence& evidence() const { return evidence_; }
   std::vector<MapId> maps() const;
   /// Reads the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
   void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
@@ -166,6 +169,7 @@ class SlamSystem {
   std::array<double, 4> last_intrinsics_{};
   double frame_readout_s_ = 0;  ///< of the frame in work; 0 when it does not say
   KeyframeId requested_centre_ = kNoKeyframe;
+  PoseEvidence evidence_;
 };
 
 }  // namespace rtd::slam

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/bus/commands.hpp"
@@ -106,6 +107,23 @@ TEST_F(MapServiceTest, obeys_commands_between_frames_and_answers_every_frame) {
   for (const std::uint64_t end = seq + 5; seq < end; ++seq) step(seq);
   EXPECT_GE(results_.all().back()->keyframes, keyframes);
   EXPECT_EQ(results_.all().size(), seq) << "one result for each frame";
+}
+
+TEST_F(MapServiceTest, answers_what_is_asked_of_a_pose_a_keyframe_and_a_landmark) {
+  start(service::Pace::kLockstep);
+  EXPECT_THAT(call("slam/ask", "doubt"), HasSubstr("failed: the last frame has no measured pose"));
+  for (std::uint64_t seq = 0; seq < 20; ++seq) step(seq);
+  const auto doubt = nlohmann::json::parse(call("slam/ask", "doubt"));
+  EXPECT_EQ(doubt["agree"], results_.all().back()->inliers);
+  EXPECT_EQ(doubt["landmarks"].size(), doubt["disagree"]);
+  const auto keyframe = nlohmann::json::parse(call("slam/ask", "keyframe 0"));
+  EXPECT_GT(keyframe["landmarks"], 50);
+  EXPECT_NEAR(keyframe["seen_s"][0].get<double>(), 1e-9 * static_cast<double>(results_.all().front()->stamp_ns), 1e-6);
+  EXPECT_NEAR(keyframe["camera"]["cx"].get<double>(), 0.5, 0.05);
+  EXPECT_THAT(call("slam/ask", "landmark 0 90 0 1"), HasSubstr("failed: the map has none there"));
+  EXPECT_THAT(call("slam/ask", "keyframe 99999"), HasSubstr("failed: the map has none there"));
+  for (const char* wrong : {"", "weather", "keyframe", "keyframe x", "landmark 0 1 2", "doubt 3", "landmark 0 nan 0 1"})
+    EXPECT_THAT(call("slam/ask", wrong), HasSubstr("failed: ask 'doubt'")) << wrong;
 }
 
 /// What a peer may try with the name of a map. Nothing but "maps" may change.

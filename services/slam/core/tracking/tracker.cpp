@@ -237,6 +237,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   const bool had_pose = msg::has_pose(state_);
   state_ = msg::TrackingState::kOk;
   outcome.consistency = consistency_.value();
+  outcome.rejected = tracking.rejected;
   const geometry::Matrix6d measured = config_.sensor.shared_error * tracking.guess.covariance;
   const geometry::Matrix6d local = measured + consistency_.covariance(scene_m_);
   outcome.sigma_m = geometry::largest_sigma(measured.topLeftCorner<3, 3>());

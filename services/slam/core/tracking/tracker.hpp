@@ -46,7 +46,8 @@ struct TrackOutcome {
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
-  bool contradicted = false;  ///< an IMU expected another pose less than a second ago
+  bool contradicted = false;          ///< an IMU expected another pose less than a second ago
+  std::vector<Association> rejected;  ///< landmarks that were recognised and contradict the measured pose
   /// Odometry continues beside the map, which is old and does not change. At the first frame after it: where odometry
   /// expects that frame.
   bool apart = false;
