@@ -18,8 +18,9 @@ import { LayersPanel } from "./layers_panel.js";
 import { PanelFrame } from "./panel_frame.js";
 import { Plots } from "./plots.js";
 import { PoseAge } from "./pose_age.js";
+import { Questions } from "./questions.js";
 import { ReplayBar } from "./replay_bar.js";
-import { Session } from "./session.js";
+import { kOfImage, Session } from "./session.js";
 import { Settings } from "./settings.js";
 import { bindShortcuts } from "./shortcuts.js";
 import { SystemPanel } from "./system_panel.js";
@@ -38,8 +39,12 @@ class App {
     this.age = new PoseAge();
     this.undecoded = { count: 0, reason: "" };
     this.calls = new Calls((message) => this.connection.send(message));
+    this.questions = new Questions(this.calls);
     this.header = new Header((index) => this.select(index));
-    this.image = new ImagePanel(this.settings, (bitmap) => this.scene?.setCameraImage(bitmap), () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0));
+    this.image = new ImagePanel(this.settings, {
+      onDrawn: (bitmap) => this.scene?.setCameraImage(bitmap), onSwitch: () => this.sendOptions(),
+      pause_ms: () => (this.scene?.frugal ? kFrugalImagePause * this.scene.pace.period_ms : 0),
+    });
     this.plots = new Plots();
     this.system = new SystemPanel();
     this.fleet = new FleetPanel((index) => this.select(index));
@@ -124,7 +129,7 @@ class App {
       const message = decode(buffer);
       if (!message) return;
       this.session.applyBinary(message);
-      if (["image", "features", "people", "mask"].includes(message.type)) {
+      if (kOfImage.includes(message.type)) {
         if (message.robot === this.selected) this.image.update(this.robot);
         return;
       }
@@ -180,6 +185,7 @@ class App {
     const allowed = connection.state === "open" && session.hello?.control === true;
     this.header.update({ report, session, robot, pose_ms: this.age.shown_ms(Date.now(), connection.clock.offset_ms) });
     byId("retry").hidden = connection.state !== "closed";
+    if (allowed) this.questions.followDoubt(robot, now_ms, () => this.image.update(this.robot));
     if (this.frame.shows("plots")) this.plots.update(robot, now_s);
     if (this.frame.shows("system")) this.system.update(session, robot, connection, now_s);
     this.fleet.update(session, this.selected, link, now_ms);
@@ -222,7 +228,7 @@ class App {
     const { layers, overlays } = this.settings;
     const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;
     const options = { op: "options", image, mask: image && overlays.mask, people: image && overlays.people,
-                      features: image && overlays.features,
+                      features: image && overlays.features, depth: image && overlays.depth,
                       points: layers.points, dense: layers.dense, moving: layers.moving, plan: layers.plan, robot: this.selected };
     const text = JSON.stringify(options);
     if (text !== this.options && this.connection.send(options)) this.options = text;

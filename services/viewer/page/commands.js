@@ -26,14 +26,14 @@ const kKnown = {
   "/recorder/stop": { group: "Recording", kind: "button", label: "Stop recording", idle: "Not recording" },
 };
 
-const kReplay = "/replay/";
+const kElsewhere = /^\/(replay\/|slam\/ask$)/;   // a bar of its own; what the page asks by itself
 const kKinds = { none: "button", bool: "switch", text: "text" };
 
-/** The commands for the panel, in a fixed order; those of a replay have a bar of their own. */
+/** The commands for the panel, in a fixed order. */
 export function panelCommands(commands) {
   const order = Object.keys(kKnown);
   const rank = ({ name }) => (order.includes(name) ? order.indexOf(name) : order.length);
-  return commands.filter(({ name }) => !name.startsWith(kReplay)).map(describe)
+  return commands.filter(({ name }) => !kElsewhere.test(name)).map(describe)
     .sort((a, b) => rank(a) - rank(b) || a.name.localeCompare(b.name));
 }
 

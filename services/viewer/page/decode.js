@@ -82,6 +82,9 @@ function image(reader, count) {
   return { stamp_s: reader.f64(), width: reader.u32(), height: reader.u32(), jpeg: reader.bytes(count) };
 }
 
+/** A message with its JPEG as something that can be drawn. */
+export const toBitmap = ({ jpeg }) => createImageBitmap(new Blob([jpeg], { type: "image/jpeg" }));
+
 /** us, vs: px of the raw image. */
 function features(reader, count) {
   const stamp_s = reader.f64(), width = reader.u16(), height = reader.u16();
@@ -146,6 +149,7 @@ const kBodies = {
   14: ["moving", densePoints],
   15: ["plan", floorPlan],
   16: ["trajectory_values", trajectoryValues],
+  17: ["depth", image],
 };
 
 /** The message as {type, robot, map, ...}; null for a kind that a newer server may send. */

@@ -12,10 +12,26 @@ export function transform(t, q, v, out, at) {
   out[at + 2] = t[2] + v[2] + 2 * (x * cy - y * cx);
 }
 
+/** A landmark of a keyframe, its place-th, in the frame of the keyframe's camera. */
+export function landmarkInCamera({ points: { data, scale_m } }, place) {
+  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
+  return [0, 2, 4].map((byte) => scale_m * view.getInt16(8 * place + byte, true));
+}
+
 /** Writes a landmark of a keyframe, its place-th, in the map's frame to out at index `at`. */
-export function landmark(map, { slot, points: { data, scale_m } }, place, out, at) {
-  const view = new DataView(data.buffer, data.byteOffset, data.byteLength), pose = map.pose(slot);
-  transform(pose, pose.subarray(4), [0, 2, 4].map((byte) => scale_m * view.getInt16(8 * place + byte, true)), out, at);
+export function landmark(map, keyframe, place, out, at) {
+  const pose = map.pose(keyframe.slot);
+  transform(pose, pose.subarray(4), landmarkInCamera(keyframe, place), out, at);
+}
+
+/** Where a camera with this pose sees a point: {x, y} as shares of its image, or null outside. camera: {fx, fy, cx, cy},
+    as such shares, too. */
+export function pictured(pose, point, { fx, fy, cx, cy }) {
+  const [x, y, z, qx, qy, qz, qw] = pose, seen = [];
+  transform([0, 0, 0], [-qx, -qy, -qz, qw], [point[0] - x, point[1] - y, point[2] - z], seen, 0);
+  if (seen[2] < 0.01) return null;
+  const at = { x: fx * seen[0] / seen[2] + cx, y: fy * seen[1] / seen[2] + cy };
+  return at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 ? at : null;
 }
 
 const kSamples = 3000;

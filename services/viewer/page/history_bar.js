@@ -77,5 +77,5 @@ export function showMoment(figure, moment) {
   URL.revokeObjectURL(figure.source);
   figure.source = moment.image ? URL.createObjectURL(new Blob([moment.image.jpeg], { type: "image/jpeg" })) : "";
   const text = `${moment.state}, ${moment.inliers} inliers, ${moment.removed} removed`;
-  figure.replaceChildren(...(moment.image ? [el("img", { src: figure.source, alt: text })] : []), el("figcaption", {}, text));
+  figure.replaceChildren(...(moment.image ? [el("div", { class: "shot" }, el("img", { src: figure.source, alt: text }))] : []), el("figcaption", {}, text));
 }

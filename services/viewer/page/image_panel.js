@@ -5,9 +5,10 @@
 // dynamic mask.
 
 import { byId, setText } from "./dom.js";
-import { expandMask } from "./decode.js";
+import { expandMask, toBitmap } from "./decode.js";
+import { DepthPicture } from "./depth_picture.js";
 import { count } from "./format.js";
-import { kKept, kRemoved } from "./palette.js";
+import { kContradicting, kKept, kRemoved } from "./palette.js";
 
 const kMoving = [239, 68, 68, 105], kUnknown = [245, 158, 11, 60];
 const kPeople = [[56, 189, 248, 120], [192, 132, 252, 120], [74, 222, 128, 120], [251, 146, 60, 120], [244, 114, 182, 120]];
@@ -19,11 +20,10 @@ const kFeatureRadius_px = 1.7;   // on the screen
 const kFont_px = 12;
 
 export class ImagePanel {
-  /** onDrawn(bitmap): an image is shown; pause_ms(): least time between two images. */
-  constructor(settings, onDrawn = () => {}, pause_ms = () => 0) {
-    this.settings = settings;
-    this.onDrawn = onDrawn;
-    this.pause_ms = pause_ms;
+  /** onDrawn(bitmap): an image is shown; onSwitch(): something else is wanted; pause_ms(): least time between two images. */
+  constructor(settings, { onDrawn, onSwitch, pause_ms }) {
+    Object.assign(this, { settings, onDrawn, onSwitch, pause_ms });
+    this.depth = new DepthPicture();
     this.canvas = byId("image");
     this.context = this.canvas.getContext("2d", { willReadFrequently: true });   // drawn by the processor
     this.legend = { kept: byId("kept"), removed: byId("removed"), boxes: byId("boxes") };
@@ -63,11 +63,13 @@ export class ImagePanel {
     box.addEventListener("change", () => {
       this.settings.overlays[name] = box.checked;
       this.settings.save();
-      this.#draw();
+      this.onSwitch();
+      this.#show();
     });
   }
 
   #show() {
+    this.depth.update(this.frozen ? null : this.robot?.overlay("depth"), this.settings.overlays.depth);
     const image = this.#image;
     if (!image) {
       this.decoded = null;
@@ -92,7 +94,7 @@ export class ImagePanel {
   async #decode(image) {
     this.decoding = true;
     try {
-      const bitmap = await createImageBitmap(new Blob([image.jpeg], { type: "image/jpeg" }));
+      const bitmap = await toBitmap(image);
       this.bitmap?.close();
       this.bitmap = bitmap;
       this.error = "";
@@ -125,6 +127,7 @@ export class ImagePanel {
     if (overlays.mask) this.#drawMask("mask");
     if (overlays.features) this.#drawFeatures(this.robot.overlay("features"));
     if (overlays.boxes) this.#drawBoxes(this.robot.overlay("boxes"));
+    if (overlays.features && this.robot.doubts) this.#drawDoubt(this.robot.overlay("doubt"));
     this.#describe();
   }
 
@@ -163,6 +166,20 @@ export class ImagePanel {
     }
   }
 
+  /** A line from where the pose shows a landmark to where it is. */
+  #drawDoubt(doubt) {
+    const { context } = this, radius = 1.5 * kFeatureRadius_px * this.scale;
+    context.lineWidth = 1.5 * this.scale;
+    for (const [u, v, expectedU, expectedV, motion] of doubt?.landmarks ?? []) {
+      context.strokeStyle = context.fillStyle = kContradicting.at(motion);
+      context.beginPath();
+      context.moveTo(expectedU, expectedV);
+      context.lineTo(u, v);
+      context.stroke();
+      context.fillRect(u - radius, v - radius, 2 * radius, 2 * radius);
+    }
+  }
+
   #drawBoxes(overlay) {
     if (!overlay) return;
     const { context } = this, size = kFont_px * this.scale;
@@ -183,6 +200,9 @@ export class ImagePanel {
   #describe() {
     const shown = this.frozen ? undefined : this.robot, features = shown?.overlay("features"), boxes = shown?.overlay("boxes");
     const removed = features ? features.removed.reduce((sum, flag) => sum + flag, 0) : NaN;
+    const doubt = shown?.doubts ? shown.overlay("doubt") : null;
+    byId("doubt-key").hidden = !doubt;
+    setText(byId("disagree"), count(doubt?.disagree));
     setText(this.legend.kept, count(features ? features.count - removed : NaN));
     setText(this.legend.removed, count(removed));
     setText(this.legend.boxes, count(boxes ? boxes.boxes.length : NaN));

@@ -24,7 +24,7 @@ function* landmarks(map, keyframe) {
   for (let i = 0; i < keyframe.points.n; ++i) {
     const point = [];
     landmark(map, keyframe, i, point, 0);
-    yield { kind: "landmark", id: `${keyframe.id}/${i}`, point, keyframe, certainty: keyframe.points.data[8 * i + 6] / 255 };
+    yield { kind: "landmark", id: `${keyframe.id}/${i}`, index: i, point, keyframe, certainty: keyframe.points.data[8 * i + 6] / 255 };
   }
 }
 

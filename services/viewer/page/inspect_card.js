@@ -7,9 +7,20 @@ import { byId, el, setText } from "./dom.js";
 import { length } from "./format.js";
 import { showMoment } from "./history_bar.js";
 import { apart_m, describe, nearest, things } from "./inspect.js";
+import { answerRows, questionAbout } from "./questions.js";
 
 const kStill_px = 4;   // a pointer that moves further turns the view
 const kImages = 3;
+
+/** seen: [{moment, x, y}]; x, y: where to put a ring, as shares of the image. */
+function showImages(seen) {
+  byId("inspect-images").replaceChildren(...seen.map(({ moment, x, y }) => {
+    const figure = el("figure", {});
+    showMoment(figure, moment);
+    if (x !== undefined) figure.querySelector(".shot").append(el("i", { class: "ring", style: `left: ${100 * x}%; top: ${100 * y}%` }));
+    return figure;
+  }));
+}
 
 export class InspectCard {
   constructor(app) {
@@ -57,11 +68,20 @@ export class InspectCard {
     setText(byId("inspect-title"), title);
     byId("inspect-rows").replaceChildren(...rows.flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
     const moments = robot.history.towards(found.point, map.id, kImages);
-    byId("inspect-images").replaceChildren(...moments.map((moment) => {
-      const figure = el("figure", {});
-      showMoment(figure, moment);
-      return figure;
-    }));
+    showImages(moments.map((moment) => ({ moment })));
     setText(byId("inspect-note"), moments.length > 0 ? "Images of the last minutes that look towards it" : "Shift and a click on another thing measures between both.");
+    this.#askMore(found, robot, map);
+  }
+
+  /** What slam knows of it, when the answer comes. */
+  async #askMore(found, robot, map) {
+    const question = questionAbout(found), answer = question && await this.app.questions.ask(robot, question);
+    if (!answer || this.asked !== found) return;
+    byId("inspect-rows").append(...answerRows(answer, robot.tracking?.stamp_s).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+    if (found.kind !== "landmark") return;
+    const seen = robot.history.showing(answer.seen_s, found.point, map.id, answer.camera, kImages);
+    if (seen.length === 0) return;
+    showImages(seen);
+    setText(byId("inspect-note"), "Images of the last minutes in which it was seen");
   }
 }

@@ -5,6 +5,8 @@
 
 export const kKept = "#22c55e";
 export const kRemoved = "#ef4444";
+/** Landmarks that contradict a pose: by the motion that they follow, the last of those that follow none. */
+export const kContradicting = ["#e879f9", "#22d3ee", "#fde047", "#fb923c"];
 
 const kDark = {
   background: "#0d1117", grid: "#1e2630", points: "#9fb3c8", keyframe: "#4f9cf9", covisibility: "#35608f",

@@ -8,7 +8,8 @@ import { History } from "./history.js";
 import { MapState } from "./world.js";
 import { Series } from "./series.js";
 
-const kOverlaySlack_s = 0.1;      // an overlay belongs to an image if their stamps differ by less
+const kOverlaySlack_s = { depth: 0.4, doubt: 0.4 };   // an overlay belongs to an image if their stamps differ by less, usually 0.1
+export const kOfImage = ["image", "features", "people", "mask", "depth"];
 const kStageOrder = ["wait_detections", "extract", "masks", "ego_motion", "depth_check", "fuse", "match", "local_map", "pose",
                      "relocalize", "keyframe", "mapping"];   // as they follow each other; others come last
 const kMapHandlers = {
@@ -32,7 +33,7 @@ export class RobotState {
     this.events = new EventLog();
     this.history = new History();
     this.image = null;
-    this.overlays = { boxes: null, features: null, people: null, mask: null };
+    this.overlays = { boxes: null, features: null, people: null, mask: null, depth: null, doubt: null };
     this.series = { latency_ms: new Series(), inliers: new Series(), removedShare: new Series(), stage_ms: new Series() };
   }
 
@@ -58,8 +59,13 @@ export class RobotState {
   /** The overlay that belongs to the image: of the same frame, or nearly. */
   overlay(name) {
     const overlay = this.overlays[name];
-    const near = overlay && this.image && Math.abs(overlay.stamp_s - this.image.stamp_s) < kOverlaySlack_s;
+    const near = overlay && this.image && Math.abs(overlay.stamp_s - this.image.stamp_s) < (kOverlaySlack_s[name] ?? 0.1);
     return near ? overlay : null;
+  }
+
+  /** Whether the pose that it has now is doubtful. */
+  get doubts() {
+    return this.tracking !== null && this.tracking.state !== "ok";
   }
 
   count(name) {
@@ -157,7 +163,7 @@ export class Session {
     const robot = this.robot(message.robot);
     if (message.type === "image") {
       robot.image = message;
-    } else if (["features", "people", "mask"].includes(message.type)) {
+    } else if (kOfImage.includes(message.type)) {
       robot.overlays[message.type] = message;
     } else {
       if (!robot.maps.has(message.map)) this.generation += 1;

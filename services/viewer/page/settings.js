@@ -14,7 +14,7 @@ const kDefaults = {
   themeChoice: "auto", large: false, coloring: "height", pathColoring: "one colour",
   layers: { dense: true, moving: false, plan: false, points: true, keyframes: true, edges: false, trajectory: true, movers: true,
             truth: true, grid: true },
-  overlays: { features: true, boxes: true, people: true, mask: true },
+  overlays: { features: true, boxes: true, people: true, mask: true, depth: false },
   closedPanels: [], tab: "image",
 };
 

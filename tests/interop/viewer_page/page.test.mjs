@@ -4,37 +4,13 @@
 // The page as a user meets it. Times are generous: they bound hangs, they are no measurement.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
-import { pathToFileURL } from "node:url";
-import { after, afterEach, before, test } from "node:test";
-import { FakeServer } from "../../support/viewer_page/fake_server.mjs";
+import { test } from "node:test";
 import { coarse, launchBrowser, openPage, screenshot, textOf, waitFor, waitForMap } from "./browser.mjs";
+import { browser, open, page, serve, server, take, until } from "./harness.mjs";
+import { compareLook, differing } from "./looks.mjs";
 
 const kLooks = new URL("looks.json", import.meta.url);
-const kCellTolerance = 34;          // of 255, per colour of a cell
-const kDifferingCells = 0.06;       // share of cells that may differ more
 const kLeastFps = { 5000: 20, 200000: 10 };
-
-let browser, server, page;
-
-before(async () => { browser = await launchBrowser(); });
-after(() => browser.close());
-afterEach(async () => {
-  const { complaints = [], outside = [] } = page ?? {};
-  await page?.close();
-  await server?.stop();
-  page = server = undefined;
-  assert.deepEqual(complaints, [], "errors and warnings of the page");
-  assert.deepEqual(outside, [], "requests to other hosts");
-});
-
-async function open(options = {}, view = {}) {
-  server = await new FakeServer(options).start();
-  page = await openPage(browser, server.address, view);
-  return page;
-}
 
 const command = (name) => `[data-command="${name}"]`;
 const answerOf = (name) => waitFor(page, (selector) => /good|bad/.test(document.querySelector(`${selector} output`)?.className), command(name))
@@ -133,16 +109,15 @@ test("the page comes back by itself after the server was killed", async () => {
   await waitFor(page, () => document.getElementById("state-text").textContent === "Not connected");
   assert.match(await textOf(page, "#notice-detail"), new RegExp(`127.0.0.1:${port}.*rtd viewer`));
   page.complaints = page.complaints.filter((line) => !/ERR_CONNECTION_REFUSED|WebSocket/.test(line));
-  server = await new FakeServer({ points: 3000, keyframes: 40 }).start(port);
+  await serve({ points: 3000, keyframes: 40 }, port);
   await waitForMap(page, 3000);
   assert.deepEqual(await page.evaluate(() => [rtdViewer.reconnects, rtdViewer.counts.keyframes]), [1, 40]);
   page.complaints = page.complaints.filter((line) => !/ERR_CONNECTION_REFUSED|WebSocket/.test(line));
 });
 
 test("a 3D view that could not be loaded comes once the server is back", async () => {
-  server = await new FakeServer().start();
-  const { port, address } = server;
-  page = await browser.newPage();
+  const { port, address } = await serve();
+  take(await browser.newPage());
   page.complaints = page.outside = [];
   await page.setRequestInterception(true);
   let refused = 0;
@@ -151,7 +126,7 @@ test("a 3D view that could not be loaded comes once the server is back", async (
   await waitFor(page, () => !document.getElementById("no-scene").hidden && rtdViewer.counts.points === 5000);
   await server.stop();
   await waitFor(page, () => rtdViewer.state().connection !== "open");
-  server = await new FakeServer({ points: 3000, keyframes: 40 }).start(port);
+  await serve({ points: 3000, keyframes: 40 }, port);
   await waitForMap(page, 3000);
   assert.equal(await page.$eval("#no-scene", (node) => node.hidden), true);
 });
@@ -175,8 +150,8 @@ test("a lost camera is a banner above the map, which stays", async () => {
 test("without WebGL the panels work and a line says why there is no map", async () => {
   const plain = await launchBrowser("--disable-gpu", "--disable-3d-apis");
   try {
-    server = await new FakeServer().start();
-    page = await openPage(plain, server.address);
+    await serve();
+    take(await openPage(plain, server.address));
     await waitFor(page, () => !document.getElementById("no-scene").hidden && rtdViewer.counts.points === 5000);
     assert.match(await textOf(page, "#no-scene"), /WebGL/);
     await waitFor(page, () => rtdViewer.poseAgeP50 > 0 && !document.getElementById("image").hidden);
@@ -184,7 +159,7 @@ test("without WebGL the panels work and a line says why there is no map", async 
   } finally {
     await page.close();
     const { complaints } = page;
-    page = undefined;
+    take(undefined);
     await plain.close();
     assert.deepEqual(complaints, []);
   }
@@ -243,7 +218,7 @@ for (const [name, view] of Object.entries({ dark: {}, light: { theme: "light" },
     await waitFor(page, () => rtdViewer.fps === 0 && rtdViewer.state().robots[0].imageStamp_s === 12);
     const wide = await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth);
     assert.ok(wide, "nothing is wider than the screen");
-    compareLook(name, await coarse(page, await screenshot(page, name)));
+    compareLook(kLooks, name, await coarse(page, await screenshot(page, name)));
   });
 }
 
@@ -259,141 +234,3 @@ for (const [points, keyframes] of [[5000, 60], [200_000, 1000]]) {
     assert.ok(Math.max(...rates) > kLeastFps[points] / 4, `${rates} frames/s`);
   });
 }
-
-async function until(condition) {
-  for (let i = 0; i < 100; ++i) {
-    if (condition()) return;
-    await new Promise((resolve) => setTimeout(resolve, 100));
-  }
-  assert.fail(`never true: ${condition}`);
-}
-
-function differing(a, b, tolerance) {
-  const far = a.cells.filter((cell, i) => cell.some((value, k) => Math.abs(value - b.cells[i][k]) > tolerance));
-  return far.length / a.cells.length;
-}
-
-/** Against looks.json; RTD_UPDATE_LOOKS=1 writes it, for a look at the screenshots. */
-function compareLook(name, look) {
-  const looks = JSON.parse(readFileSync(kLooks, "utf8"));
-  if (process.env.RTD_UPDATE_LOOKS) {
-    writeFileSync(kLooks, `${JSON.stringify({ ...looks, [name]: look })}\n`);
-    return;
-  }
-  assert.equal(look.background, looks[name].background, "background colour");
-  const share = differing(look, looks[name], kCellTolerance);
-  assert.ok(share <= kDifferingCells, `${(100 * share).toFixed(0)} % of the cells of ${name} look different`);
-  assert.ok(Math.abs(look.other - looks[name].other) < 0.05, `${look.other} of the pixels are no background, expected ${looks[name].other}`);
-}
-
-test("the room is drawn in colour, what moved and the floor plan on request", async () => {
-  await open({ dense: 20_000 });
-  await waitForMap(page, 5000);
-  await waitFor(page, () => rtdViewer.state().robots[0].maps[0].dense === 20_000);
-  await page.click("#layer-moving");
-  await page.click("#layer-plan");
-  await until(() => server.wanted.at(-1)?.moving && server.wanted.at(-1).plan && server.wanted.at(-1).dense);
-  assert.deepEqual(await page.evaluate(() => rtdViewer.state().robots[0].maps.map(({ moving, plan }) => [moving, plan])), [[500, true]]);
-});
-
-test("a doubtful pose is explained, and becomes an event", async () => {
-  await open({ state: "ok", replay: false });
-  await waitForMap(page, 5000);
-  server.robots[0].state = "doubtful";
-  await waitFor(page, () => /Moving now: person/.test(document.getElementById("notice-detail").textContent));
-  await waitFor(page, () => [...document.querySelectorAll("#events .event")].some((node) => /tracking: doubtful/.test(node.textContent)));
-  await page.select("#events-filter", "trouble");
-  await waitFor(page, () => [...document.querySelectorAll("#events .event")].every((node) => node.dataset.level !== "ok"));
-});
-
-test("a click on an event of a replay seeks there", async () => {
-  await open();
-  await waitFor(page, () => document.querySelector("#events .event") && !document.getElementById("seek").disabled);
-  server.robots[0].state = "lost";
-  await waitFor(page, () => /tracking: lost/.test(document.querySelector("#events .event").textContent));
-  const at_s = server.robots[0].time_s;
-  await page.click("#events .event");
-  await until(() => server.calls.some(({ name }) => name === "/replay/seek"));
-  assert.ok(Math.abs(Number(server.calls.at(-1).argument) - at_s) < 1.5, server.calls.at(-1).argument);
-});
-
-test("a live run can be scrubbed back and two of its moments compared", async () => {
-  await open({ replay: false });
-  await waitForMap(page, 5000);
-  await waitFor(page, () => !document.getElementById("history").hidden);
-  await page.click("#history-pin");
-  await page.$eval("#history-seek", (slider) => {
-    slider.value = -2.5;
-    slider.dispatchEvent(new Event("input"));
-  });
-  await waitFor(page, () => / s ago, ok/.test(document.getElementById("history-time").textContent));
-  await waitFor(page, () => /s apart: moved .* turned/.test(document.getElementById("compare-text").textContent));
-  assert.equal(await page.$$eval("#compare img", (images) => images.length), 2);
-  await page.click("#history-live");
-  assert.equal(await textOf(page, "#history-time"), "live");
-});
-
-test("a click asks a thing, Shift and a click measures", async () => {
-  await open({ points: 20_000 });
-  await waitForMap(page, 20_000);
-  await page.keyboard.press("2");
-  await page.waitForFunction(() => rtdViewer.state().scene === "above");
-  const { x, y, width, height } = await (await page.$("#map canvas")).boundingBox();
-  const ask = async (u) => {
-    for (let i = 0; i < 30; ++i) {
-      await page.mouse.click(x + width * (u + 0.005 * i), y + height / 2);
-      if (!(await page.$eval("#inspect", (card) => card.hidden))) return textOf(page, "#inspect-title");
-    }
-    return "";
-  };
-  assert.match(await ask(0.4), /^(Landmark|Keyframe|person) /);
-  await page.keyboard.down("Shift");
-  assert.notEqual(await ask(0.55), "");
-  await page.keyboard.up("Shift");
-  await page.click("#inspect-close");
-  assert.equal(await page.$eval("#inspect", (card) => card.hidden), true);
-});
-
-test("a link opens the same layers and view; a file holds the map", async () => {
-  await open({ dense: 5000 });
-  await waitForMap(page, 5000);
-  await waitFor(page, () => rtdViewer.state().robots[0].maps[0].dense === 5000);
-  await page.click("#layer-keyframes");
-  await page.keyboard.press("3");
-  await page.keyboard.press("h");
-  const link = await page.$eval("#share-link", (field) => field.value);
-  const folder = mkdtempSync(join(tmpdir(), "rtd_share_"));
-  const session = await page.createCDPSession();
-  await session.send("Page.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  await page.click("#share-save");
-  await waitFor(page, () => /MB, opens in any browser/.test(document.getElementById("share-answer").textContent));
-  await until(() => readdirSync(folder).some((name) => name.endsWith(".html")));
-  const file = join(folder, readdirSync(folder).find((name) => name.endsWith(".html")));
-  const saved = await openPage(browser, pathToFileURL(file).href);
-  await waitFor(saved, () => document.documentElement.dataset.drawn === "yes");
-  assert.match(await textOf(saved, "#layers"), /Room \(5,000 points\)/);
-  assert.ok((await coarse(saved, await screenshot(saved, "map_file"))).other > 0.01, "the map is drawn");
-  assert.deepEqual([saved.complaints, saved.outside], [[], []]);
-  await saved.close();
-  rmSync(folder, { recursive: true });
-  const other = await openPage(browser, link);
-  await waitForMap(other, 5000);
-  assert.equal(await other.$eval("#layer-keyframes", (box) => box.checked), false);
-  assert.equal(await other.evaluate(() => rtdViewer.state().scene), "free");
-  await other.close();
-});
-
-test("several robots at a glance; a click goes to one", async () => {
-  await open({ robots: 3 });
-  await waitFor(page, () => document.querySelectorAll("#fleet tr").length === 4);
-  await waitFor(page, () => document.querySelector("#fleet tr:nth-child(3) td").textContent === "Tracking");
-  await page.click("#fleet tr:nth-child(3) button");
-  await waitFor(page, () => rtdViewer.state().selected === 1 && document.querySelector("#fleet tr:nth-child(3)").classList.contains("selected"));
-});
-
-test("the path is coloured by error, with a legend", async () => {
-  await open();
-  await waitForMap(page, 5000);
-  await page.select("#path-coloring", "error");
-  await waitFor(page, () => /red: .* and more/.test(document.getElementById("path-legend").textContent));
-});

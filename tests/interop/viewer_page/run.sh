@@ -20,4 +20,4 @@ command -v chromium >/dev/null || skip "chromium is not installed"
 [ -f /usr/share/javascript/three/three.module.js ] || skip "libjs-three is not installed"
 
 export RTD_NODE_TOOLS="$tools" RTD_CHROMIUM="$(command -v chromium)" RTD_SCREENSHOTS="$screenshots"
-exec node --test --test-concurrency=1 "$here/page.test.mjs"
+exec node --test --test-concurrency=1 "$here"/*.test.mjs

@@ -34,7 +34,8 @@ export function cameraView(time_s) {
     const light = 150 - 0.9 * row + 0.3 * column;
     return row > 44 ? [118 - row, 92 - row / 2, 70] : [light, light - 4, light - 14];
   };
-  return { jpeg: flatJpeg(kWidth / kBlock, kHeight / kBlock, color), box, features: featuresOf(box, shift), mask: maskOf(box), people: labelsOf(box) };
+  const depthColor = (column, row) => (inside(box, column * 2 * kBlock, row * 2 * kBlock) ? [250, 200, 0] : row < 4 ? [0, 0, 0] : [0, 120 + 2 * column, 255]);
+  return { jpeg: flatJpeg(kWidth / kBlock, kHeight / kBlock, color), depth: flatJpeg(kWidth / 2 / kBlock, kHeight / 2 / kBlock, depthColor), box, features: featuresOf(box, shift), mask: maskOf(box), people: labelsOf(box) };
 }
 
 function featuresOf(box, shift) {

@@ -90,6 +90,10 @@ export function image(stamp_s, width, height, jpeg, at) {
   return new Writer(8, jpeg.length, at).f64(stamp_s).u32(width).u32(height).raw(jpeg).done();
 }
 
+export function depth(stamp_s, width, height, jpeg, at) {
+  return new Writer(17, jpeg.length, at).f64(stamp_s).u32(width).u32(height).raw(jpeg).done();
+}
+
 /** list: [{u, v, removed}], px */
 export function features(stamp_s, width, height, list, at) {
   const out = new Writer(9, list.length, at).f64(stamp_s).u16(width).u16(height);

@@ -82,10 +82,10 @@ export class FakeRobot {
   }
 
   view() {
-    const { jpeg, box, features, mask, people } = cameraView(this.time_s), { stamp_s, at } = this;
+    const { jpeg, depth, box, features, mask, people } = cameraView(this.time_s), { stamp_s, at } = this;
     return [
       encode.image(stamp_s, kWidth, kHeight, jpeg, at), encode.features(stamp_s, kWidth, kHeight, features, at),
-      encode.dynamicMask(stamp_s, mask.width, mask.height, mask.values, at),
+      encode.depth(stamp_s, kWidth / 2, kHeight / 2, depth, at), encode.dynamicMask(stamp_s, mask.width, mask.height, mask.values, at),
       encode.personMasks(stamp_s, mask.width, mask.height, people, at),
       { type: "boxes", robot: this.index, stamp_s, boxes: [box] },
     ];
@@ -109,7 +109,7 @@ export class FakeRobot {
   }
 
   commands() {
-    const names = { "/slam/reset": "none", "/slam/save_map": "text", "/slam/load_map": "text", "/slam/localize_only": "bool",
+    const names = { "/slam/reset": "none", "/slam/save_map": "text", "/slam/load_map": "text", "/slam/localize_only": "bool", "/slam/ask": "text",
                     "/filter/set_mode": "text", "/recorder/start": "text", "/recorder/stop": "none",
                     ...(this.replay ? { "/replay/pause": "bool", "/replay/step": "none", "/replay/seek": "text", "/replay/speed": "text" } : {}) };
     return { type: "commands", robot: this.index, commands: Object.entries(names).map(([name, argument]) => ({ name, argument })) };
@@ -139,6 +139,8 @@ export class FakeRobot {
         return { answer: { success: false, message: `no such file: ${argument}` }, messages: [] };
       case "/filter/set_mode":
         return { answer: { success: kModes.includes(argument), message: `mode ${argument}` }, messages: [] };
+      case "/slam/ask":
+        return done(JSON.stringify(argument === "doubt" ? this.#doubt() : this.#facts(argument)));
       case "/replay/pause": this.paused = argument === "true"; break;
       case "/replay/step": this.time_s += 0.033; return done("one frame", [this.tracking(), ...this.view(), this.playback()]);
       case "/replay/seek": this.time_s = Number(argument); break;
@@ -146,6 +148,20 @@ export class FakeRobot {
     }
     return done(name.startsWith("/replay") ? `at ${this.time_s.toFixed(1)} s` : `${name} ${argument}`.trim(),
                 name.startsWith("/replay") ? [this.playback()] : []);
+  }
+
+  /** A box of landmarks that moved 12 cm to the right, and some that were taken for others. */
+  #doubt() {
+    const moved = Array.from({ length: 30 }, (_, i) => [420 + 12 * (i % 6), 250 + 14 * Math.floor(i / 6), 385 + 12 * (i % 6), 250 + 14 * Math.floor(i / 6), 0]);
+    const others = Array.from({ length: 8 }, (_, i) => [60 + 50 * i, 120, 75 + 50 * i, 100 + 5 * i, -1]);
+    return { stamp_s: this.stamp_s, agree: 41, disagree: 38, landmarks: [...moved, ...others],
+             motions: [{ landmarks: 30, center_m: [0.5, 0, 2], moved_m: [0.12, 0, 0] }] };
+  }
+
+  #facts(question) {
+    const camera = { fx: 0.81, fy: 1.08, cx: 0.5, cy: 0.5 }, seen_s = Array.from({ length: 60 }, (_, i) => Math.max(0, this.stamp_s - i)).reverse();
+    return question.startsWith("keyframe") ? { id: 1, features: 1000, landmarks: 300, connected: 12, sigma_m: 0.012, sigma_deg: 0.2, seen_s: [0.5], camera }
+                                           : { id: 812, observations: 60, found: 130, visible: 160, sigma_m: 0.0042, seen_s, camera };
   }
 
   /** What the room looks like, people in it, and its floor. */

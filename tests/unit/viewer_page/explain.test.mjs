@@ -20,6 +20,13 @@ test("a doubtful pose is explained with its numbers, one that is ok is not", () 
                           "Its position is certain to 13.0 cm along the worst axis.", "Last ok 2 s ago."]);
 });
 
+test("what disagrees is said while the answer is fresh", () => {
+  const doubt = { stamp_s: 9.8, agree: 41, disagree: 38, motions: [{ landmarks: 30, moved_m: [0.12, 0, 0] }] };
+  const said = (stamp_s) => reasons({ ...robot({ state: "doubtful", stamp_s }), overlays: { doubt } }).join();
+  assert.match(said(10), /38 landmarks disagree with it, 41 agree; of the former 30 moved 12.0 cm together since they were mapped\./);
+  assert.doesNotMatch(said(20), /disagree/);
+});
+
 test("a lost pose: too little in view, or a view that the map does not know", () => {
   assert.match(reasons(robot({ state: "lost", static: 12, inliers: 0 })).join(), /Only 12 static features/);
   assert.match(reasons(robot({ state: "odometry", inliers: 4 })).join(), /300 static features are in view, 4 match the map/);

@@ -5,6 +5,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { History, difference } from "../../../services/viewer/page/history.js";
 import { apart_m, describe, nearest, things } from "../../../services/viewer/page/inspect.js";
+import { answerRows, questionAbout } from "../../../services/viewer/page/questions.js";
 import { RobotState } from "../../../services/viewer/page/session.js";
 import { MapState } from "../../../services/viewer/page/world.js";
 
@@ -84,4 +85,28 @@ test("a robot keeps its history while it is live, not in a replay", () => {
   robot.playback = { state: "playing", position_s: 0 };
   robot.setTracking(tracked(2), 0);
   assert.equal(robot.history.moments.length, 1);
+});
+
+test("a moment is an image with the pose of its frame, not the newest", () => {
+  const history = new History();
+  for (let i = 0; i < 20; ++i) history.add(tracked(i / 30, ahead(i)), i < 15 ? null : image(10 / 30, 10));
+  assert.deepEqual(history.moments.map(({ pose: [x] }) => x), [0, 10]);
+});
+
+test("images that saw a landmark: near the stamps of its keyframes, and where it is in them", () => {
+  const history = new History(), camera = { fx: 1, fy: 1, cx: 0.5, cy: 0.5 };
+  for (let i = 0; i < 10; ++i) history.add(tracked(i, ahead(0.1 * i)), image(i, 10));
+  const seen = history.showing([2, 3, 4, 5, 6, 40], [0.4, 0, 2], 0, camera, 3);
+  assert.deepEqual(seen.map(({ moment, x, y }) => [moment.stamp_s, Number(x.toFixed(6)), y]), [[2, 0.6, 0.5], [4, 0.5, 0.5], [6, 0.4, 0.5]]);
+  assert.deepEqual(history.showing([2], [0, 0, -2], 0, camera, 3), [], "behind the camera");
+  assert.deepEqual(history.showing([2], [9, 0, 2], 0, camera, 3), [], "outside the image");
+});
+
+test("slam is asked about a landmark by its place, and answers in words", () => {
+  const [keyframe, landmark] = [...things(mapWithThings(), [], kAll)];
+  assert.deepEqual([questionAbout(keyframe), questionAbout(landmark), questionAbout({ kind: "mover" })], ["keyframe 7", "landmark 7 1.0000 0.0000 0.0000", null]);
+  assert.deepEqual(answerRows({ observations: 3, found: 9, visible: 10, sigma_m: 0.0042, seen_s: [1, 2, 4] }, 5),
+                   [["Observations", "3 keyframes; in 9 of 10 frames"], ["Certain to", "0.4 cm along the worst axis"], ["First seen", "4.0 s ago"], ["Last seen", "1.0 s ago"]]);
+  assert.deepEqual(answerRows({ features: 900, sigma_m: 0.01, sigma_deg: 0.2, seen_s: [100] }, 5),
+                   [["Features", "900"], ["Certain to", "1.0 cm, 0.20° along the worst axis"], ["Taken", "in an earlier run"]]);
 });
