@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# rtd viewer with the real services: in Chromium (of one robot, of two), or with Foxglove's client library.
-#   run.sh RTD TOOLS_DIR live|foxglove|robots [SCREENSHOT_DIR]   TOOLS_DIR: where `deploy/setup.sh --viewers` put the npm packages
+# rtd viewer with the real services: in Chromium (of one robot, of two, the pages that a run leaves behind), or with Foxglove's client library.
+#   run.sh RTD TOOLS_DIR live|files|foxglove|robots [SCREENSHOT_DIR]   TOOLS_DIR: where `deploy/setup.sh --viewers` put the npm packages
 # Exit code 77 = skipped: node, an npm package or Chromium is not there.
 set -euo pipefail
 rtd="$(realpath -m "$1")" tools="$(realpath -m "$2")" what="$3" screenshots="${4:-}"

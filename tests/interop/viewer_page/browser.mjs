@@ -25,7 +25,8 @@ export async function openPage(browser, address, { width = 1280, height = 800, p
   });
   page.on("pageerror", (error) => page.complaints.push(String(error.stack ?? error)));
   page.on("request", (request) => {
-    if (!request.url().startsWith(address) && !request.url().startsWith("blob:")) page.outside.push(request.url());
+    const url = request.url();
+    if (!url.startsWith(address) && !/^(blob|data):/.test(url)) page.outside.push(url.slice(0, 200));
   });
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
   await page.setViewport({ width, height, isMobile: phone, hasTouch: phone });
