@@ -68,6 +68,13 @@ export class MapLayer {
     return changes.any || rebuilt !== 0;
   }
 
+  /** Points of the layers that are shown. */
+  get pointCount() {
+    const of = ({ parts }) => parts.reduce((sum, { positions }) => sum + positions.length / 3, 0);
+    const { points = true, dense, moving } = this.visible ?? {};
+    return (points ? this.map.pointCount : 0) + (dense ? of(this.map.dense) : 0) + (moving ? of(this.map.moving) : 0);
+  }
+
   /** Whether something was put off that a later update() will do. */
   get waiting() {
     return Object.values(this.pending).some(Boolean);

@@ -18,6 +18,7 @@ const kLongestStep_s = 0.1;
 const kRobotGap_m = 3;
 const kPutOff_ms = 250;         // work that was put off is done after so long at the latest
 const kRest_ms = 400;
+const kOneRefresh_ms = 20;      // of a usual screen, and a little
 const kSoftware = /swiftshader|llvmpipe|software/i;
 
 export class Scene {
@@ -159,7 +160,10 @@ export class Scene {
   request() {
     if (this.requested) return;
     this.requested = true;
-    const draw = () => requestAnimationFrame((now_ms) => this.#frame(now_ms));
+    const draw = () => {
+      this.asked_ms = performance.now();
+      requestAnimationFrame((now_ms) => this.#frame(now_ms));
+    };
     const pause_ms = this.software && !this.#measuring() ? (this.drawn_ms ?? 0) + this.pace.period_ms - performance.now() : 0;
     if (pause_ms > 0) setTimeout(draw, pause_ms);
     else draw();
@@ -223,8 +227,18 @@ export class Scene {
     else this.#resumeLater();
   }
 
+  /** How long the last drawing took, as far as the screen shows: while the driver is behind, all the time since then. */
+  #lastTook_ms(now_ms) {
+    const waited_ms = now_ms - this.asked_ms;
+    return waited_ms > kOneRefresh_ms ? now_ms - (this.drawn_ms ?? -Infinity) : Math.max(0, waited_ms);
+  }
+
+  #pointCount() {
+    return [...this.robots.values()].flatMap((robot) => [...robot.layers.values()]).reduce((sum, layer) => sum + layer.pointCount, 0);
+  }
+
   #draw(now_ms, followed) {
-    this.detail.frame(now_ms - (this.drawn_ms ?? -Infinity));
+    this.detail.frame(this.#lastTook_ms(now_ms), this.#pointCount(), this.frugal);
     this.look.share = this.resting ? 1 : this.detail.share;
     this.forced = this.resting = false;
     this.drawn_ms = now_ms;

@@ -123,15 +123,39 @@ test("where drawing makes poses late, the page draws less often, and more often 
 });
 
 test("slow frames lower the share of points that is drawn, fast ones raise it to all again", () => {
-  const detail = new Detail(), draw = (interval_ms, n) => { for (let i = 0; i < n; ++i) detail.frame(interval_ms); };
+  const detail = new Detail(), draw = (took_ms, n, points = 1e6) => { for (let i = 0; i < n; ++i) detail.frame(took_ms, points); };
   draw(33, 20);
   assert.equal(detail.share, 1);
   draw(150, 5);
   assert.ok(detail.share < 0.7);
   draw(150, 50);
   assert.equal(detail.share, 0.05);
-  draw(5000, 1);
-  draw(33, 60);
+  draw(1e6, 1);
+  draw(16, 60);
+  assert.equal(detail.share, 1);
+});
+
+test("30 frames a second while many points are drawn, ten when only a few could be", () => {
+  const settle = (points, us_per_point) => {
+    const detail = new Detail();
+    let took_ms = 0;
+    for (let i = 0; i < 300; ++i) {
+      took_ms = Math.max(16, 1e-3 * us_per_point * detail.share * points);
+      detail.frame(took_ms, points);
+    }
+    return { drawn: detail.share * points, took_ms };
+  };
+  assert.ok(settle(100_000, 0.4).took_ms <= 35 && settle(100_000, 0.4).drawn > 70_000);
+  assert.ok(settle(1_000_000, 1).took_ms <= 85 && settle(1_000_000, 1).drawn > 50_000);
+  assert.equal(settle(50_000, 1).drawn, 50_000, "50 ms, and nothing is left out");
+});
+
+test("on the robot's own computer enough is drawn, and no more", () => {
+  const detail = new Detail();
+  for (let i = 0; i < 50; ++i) detail.frame(5, 120_000, true);
+  assert.equal(detail.share, 0.5);
+  detail.frame(5, 40_000, true);
+  for (let i = 0; i < 50; ++i) detail.frame(5, 40_000, true);
   assert.equal(detail.share, 1);
 });
 
