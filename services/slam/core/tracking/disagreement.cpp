@@ -32,6 +32,13 @@ struct Group {
   std::vector<std::size_t> members;
 };
 
+bool fits(const vision::RgbdProjection& camera, const vision::PoseObservation& observation,
+          const Eigen::Isometry3d& T_camera_world, double max_error_px) {
+  const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
+  return p_camera.z() >= vision::kMinProjectionDepth_m &&
+         vision::rgbd_residual(camera, p_camera, observation.measured).norm() <= max_error_px * observation.sigma_px;
+}
+
 /// Seen from the landmarks that move alike, the camera has another pose than seen from those that rest.
 std::optional<Group> find_group(const PoseEvidence& evidence,
                                 const std::vector<vision::PoseObservation>& observations) {
@@ -41,16 +48,19 @@ std::optional<Group> find_group(const PoseEvidence& evidence,
   const vision::RgbdProjection& camera = evidence.frame->camera;
   const PoseRansacResult coarse = estimate_pose_ransac(camera, observations, options);
   if (!coarse.success) return std::nullopt;
-  const auto fine = vision::optimize_pose(camera, observations, coarse.T_world_camera);
-  if (!fine.success || fine.inliers < kFewest) return std::nullopt;
   Group group;
+  std::vector<vision::PoseObservation> alike;  // the others would pull the pose to themselves
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (fine.inlier[i] == 0) continue;
+    if (!fits(camera, observations[i], coarse.T_world_camera.inverse(), options.max_error_px)) continue;
     group.members.push_back(i);
-    group.motion.center_m += observations[i].p_world / fine.inliers;
+    alike.push_back(observations[i]);
   }
+  const auto fine = vision::optimize_pose(camera, alike, coarse.T_world_camera);
+  if (!fine.success || alike.size() < kFewest) return std::nullopt;
+  for (const vision::PoseObservation& observation : alike)
+    group.motion.center_m += observation.p_world / static_cast<double>(alike.size());
   const Eigen::Isometry3d T_then_now = evidence.T_world_camera * fine.T_world_camera.inverse();
-  group.motion.landmarks = fine.inliers;
+  group.motion.landmarks = static_cast<int>(alike.size());
   group.motion.moved_m = T_then_now * group.motion.center_m - group.motion.center_m;
   return group;
 }
