@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/msg/point_cloud.hpp"
 #include "common/msg/transform_eigen.hpp"
 
 namespace rtd::viewer {
@@ -36,6 +37,14 @@ msg::MapUpdate map_of(std::uint32_t keyframes, std::size_t points_each, double x
     update.keyframes.push_back(std::move(keyframe));
   }
   return update;
+}
+
+/// A cloud in colour, as rtd-dense publishes it.
+msg::PointCloud2 cloud_of(std::size_t points) {
+  std::vector<msg::CloudSlot> slots(points);
+  for (std::size_t i = 0; i < points; ++i)
+    slots[i] = {static_cast<float>(i % 1000), static_cast<float>(i / 1000), 1, 0};
+  return msg::make_cloud(slots, "rgb", 0, "map");
 }
 
 msg::TrackingResult result_at(double x) {
@@ -164,6 +173,24 @@ TEST_F(PageSessionTest, a_page_gets_no_more_than_its_rate) {
   EXPECT_LT(bytes, 20U * 800'000);
   EXPECT_GT(counts["binary 8"], 20 * 6) << "images";
   EXPECT_GT(counts["tracking"], 20 * 28) << "poses are not held up by images";
+}
+
+TEST_F(PageSessionTest, the_first_picture_of_the_largest_map_takes_three_megabytes) {
+  RobotMirror& robot = *hub.robot("");
+  robot.map().add(map_of(2000, 500));
+  robot.add(CloudKind::kStatic, cloud_of(200'000));
+  robot.add(msg::CompressedImage{.data = std::vector<std::uint8_t>(100'000)});
+  for (int i = 0; i < 1800; ++i) robot.map().add_position(result_at(0.001 * i));
+  const auto page = hub.open();
+  page->on_text(R"({"op":"options","dense":true})");
+  std::map<std::string, std::size_t> bytes;
+  for (std::int64_t now = kSecond; now < 6 * kSecond; now += kSecond / 100)
+    for (const auto& [kind, more] : take(*page, now)) bytes[kind] += more;
+  std::size_t all = 0;
+  for (const auto& [kind, some] : bytes) all += some;
+  EXPECT_GT(bytes["binary 3"], 8U * 190'000) << "landmarks";
+  EXPECT_GT(bytes["binary 12"], 9U * 119'000) << "the room";
+  EXPECT_LT(all, 3'000'000U);
 }
 
 TEST_F(PageSessionTest, a_large_map_is_thinned_out) {
