@@ -28,7 +28,10 @@ rm -rf "$root/build/release/packages"
   exit 1
 }
 rm -rf "$root/build/release/packages/_CPack_Packages"
-lintian --allow-root --fail-on error,warning "$root"/build/release/packages/*.deb
+lintian --allow-root --fail-on error,warning "$root"/build/release/packages/*.deb || {
+  echo "package: lintian refuses the packages in build/release/packages for what it says above" >&2
+  exit 1
+}
 for package in "$root"/build/release/packages/*.deb; do
   echo "package: $(du -h "$package" | cut -f 1) ${package#"$PWD/"}"
 done

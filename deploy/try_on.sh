@@ -14,7 +14,7 @@ usage() {
 Usage: deploy/try_on.sh bookworm|trixie[:arm64] [demo | test | package] [--keep FOLDER] [ARGUMENTS]
   demo           ./deploy/demo.sh (the default); ARGUMENTS are passed on
   test           ./deploy/test.sh; ARGUMENTS are passed on, e.g. -L unit
-  package        ./deploy/package.sh, then the packages on another fresh system: install, first pose, remove, purge
+  package        ./deploy/package.sh, then the packages on another fresh system: first pose, upgrade, remove, purge
   --keep FOLDER  the system goes to this folder, which must not exist, and stays
 Needs root and debootstrap; for arm64 on another machine qemu-user-static, and hours: deploy/cross.sh takes less.
 Debian comes from where apt of this machine takes it.
@@ -23,7 +23,7 @@ TEXT
 
 # The packages on a system that has never seen the sources.
 try_packages() {
-  local began user="$work/user" left
+  local began user="$work/user"
   mount_system "$user"
   mkdir "$user/root/packages"
   cp "$1"/root/rtd-slam/build/release/packages/rtd-slam{,-viewer}_*.deb "$user/root/packages/"
@@ -34,13 +34,39 @@ try_packages() {
   inside "$user" rtd run --source 'synthetic:office?frames=30' --out /root/out --quiet
   [ "$(grep -c '^[0-9]' "$user/root/out/trajectory.txt")" -gt 20 ] || fail "30 frames gave too few poses"
   since "$began" "packages installed and 30 frames run"
-  inside "$user" sh -c 'apt-get install -y -qq --reinstall --no-install-recommends ./packages/*.deb >/dev/null'
-  inside "$user" sh -c 'apt-get remove -y -qq rtd-slam rtd-slam-viewer >/dev/null'
-  [ -f "$user/etc/rtd-slam/rtd-slam.conf" ] || fail "remove took the settings away"
-  inside "$user" sh -c 'apt-get purge -y -qq rtd-slam rtd-slam-viewer >/dev/null'
-  left="$(cd "$user" && find etc usr var/lib/rtd-slam var/cache/rtd-slam -name '*rtd-slam*' 2>/dev/null || true)"
+  remove_packages "$user"
+  since "$began" "packages installed, run, removed and purged"
+  began=$SECONDS
+  upgrade_packages "$user"
+  remove_packages "$user"
+  since "$began" "packages upgraded, removed and purged"
+}
+
+remove_packages() {
+  local left
+  inside "$1" sh -c 'apt-get remove -y -qq rtd-slam rtd-slam-viewer >/dev/null'
+  [ -f "$1/etc/rtd-slam/rtd-slam.conf" ] || fail "remove took the settings away"
+  inside "$1" sh -c 'apt-get purge -y -qq rtd-slam rtd-slam-viewer >/dev/null'
+  left="$(cd "$1" && find etc usr var/lib/rtd-slam var/cache/rtd-slam -name '*rtd-slam*' 2>/dev/null || true)"
   [ -z "$left" ] || fail "purge left $left"
-  since "$began" "packages installed, run, installed again, removed and purged"
+}
+
+# From the same packages with a lower version; the user's settings stay.
+upgrade_packages() {
+  # shellcheck disable=SC2016 # variables of the inner shell, a field of dpkg-query
+  inside "$1" sh -ec 'mkdir older
+    for package in packages/*.deb; do
+      version="$(dpkg-deb -f "$package" Version)"
+      dpkg-deb -R "$package" unpacked
+      sed -i "s/\b$version/0.0.1/" unpacked/DEBIAN/control
+      dpkg-deb -Znone -b unpacked older >/dev/null
+      rm -r unpacked
+    done
+    apt-get install -y -qq --no-install-recommends ./older/*.deb >/dev/null
+    echo "# mine" >>/etc/rtd-slam/rtd-slam.conf
+    apt-get install -y -qq --no-install-recommends ./packages/*.deb >/dev/null'
+  [ "$(inside "$1" dpkg-query -W -f '${Version}' rtd-slam)" != 0.0.1 ] || fail "the packages were not upgraded"
+  grep -q "^# mine" "$1/etc/rtd-slam/rtd-slam.conf" || fail "the upgrade took the user's settings away"
 }
 
 system="${1:-}"

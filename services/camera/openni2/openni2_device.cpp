@@ -358,8 +358,8 @@ std::vector<FoundCamera> find_openni2_cameras() {
   }
 }
 
-std::string openni2_support() {
-  return "openni2";
+bool supports_openni2() {
+  return true;
 }
 
 }  // namespace rtd::camera

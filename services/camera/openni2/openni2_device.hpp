@@ -20,7 +20,7 @@ std::unique_ptr<LiveDevice> make_openni2_device(const DeviceUri& uri);
 /// The cameras that OpenNI2's drivers find on this host. Opens each for its modes, starts none.
 std::vector<FoundCamera> find_openni2_cameras();
 
-/// "openni2", or why this build does not support it: for messages.
-std::string openni2_support();
+/// Whether this build has OpenNI2.
+bool supports_openni2();
 
 }  // namespace rtd::camera

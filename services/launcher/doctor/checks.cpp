@@ -183,8 +183,11 @@ void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings&
     }
   }
   if (cameras.empty()) {
-    findings.push_back({Verdict::kOk, "cameras: none is plugged in; this build supports " + camera::openni2_support() +
-                                          ", realsense-dds and ROS 2 topics"});
+    const std::string openni2 = camera::supports_openni2()
+                                    ? " and openni2"
+                                    : ", but not openni2 (libopenni2-dev was missing when it was built)";
+    findings.push_back(
+        {Verdict::kOk, "cameras: none is plugged in; this build supports ROS 2 topics, realsense-dds" + openni2});
   }
 }
 
