@@ -78,7 +78,7 @@ run_tests() {
   inside "$place" ctest --test-dir build/arm64 -j "$(nproc)" --timeout 1200 --output-on-failure "$@" || status=$?
   since "$began" "tests under qemu"
   began=$SECONDS
-  inside "$place" build/arm64/bin/rtd run --source 'synthetic:walk_xyz?frames=40' --out /root/clip-$$ --detector off --quiet
+  inside "$place" build/arm64/bin/rtd run --source 'synthetic:crowd?frames=40' --out /root/clip-$$ --detector off --quiet
   since "$began" "40 frames in lockstep under qemu"
   sha256sum "$place/root/clip-$$/trajectory.txt"
   return "$status"
