@@ -10,6 +10,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "common/concurrency/thread_priority.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/point_cloud.hpp"
@@ -148,6 +149,7 @@ service::ExitCode DenseService::run() {
     }
     publish_cloud();
     publish_grid();
+    step_back();
   }
   finish();
   return write_files();
@@ -206,6 +208,12 @@ void DenseService::count(const FusionReport& report) {
         "a larger dense.fusion.voxel_m\"",
         map_.voxels());
   }
+}
+
+/// Not earlier: on a busy computer people would wait long for their first look at the room.
+void DenseService::step_back() {
+  if (totals_.frames == 0 || std::exchange(stepped_back_, true)) return;
+  concurrency::lower_process_priority(config_.niceness);
 }
 
 /// Costs nothing without subscribers.

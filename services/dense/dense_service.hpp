@@ -66,6 +66,7 @@ struct ServiceConfig {
   std::string map_frame = "map";
   int publish_period_ms = 1000;
   int publish_max_points = 200000;
+  int niceness = 0;
   GridConfig grid;
   DenseConfig core;
 
@@ -84,6 +85,8 @@ struct ServiceConfig {
     binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two clouds on rt/dense/points");
     binder.field("publish_max_points", publish_max_points, {100, 500'000},
                  "of a published cloud, 16 bytes each; for more points the cells get larger");
+    binder.field("niceness", niceness, {0, 19},
+                 "how far it steps back behind other programs once the first frame is fused and shown");
     binder.section("grid", grid);
     core.bind(binder);
   }
@@ -109,6 +112,7 @@ class DenseService {
   void count(const FusionReport& report);
   void publish_cloud();
   void publish_grid();
+  void step_back();
   void forget_published_grid();
   void finish();
   bool ready();
@@ -137,6 +141,7 @@ class DenseService {
   struct Totals {
     std::uint64_t frames = 0, defective = 0, points = 0, masked = 0, refused = 0, carved = 0;
   } totals_;
+  bool stepped_back_ = false;
   std::int64_t newest_stamp_ns_ = 0, published_ns_ = 0, updated_ns_ = 0, grid_published_ns_ = 0;
   NavigationGrid published_grid_;
   bool full_logged_ = false, grid_stale_ = false;

@@ -13,8 +13,9 @@ const kViews = [
   { name: "viewer", width: 1280, height: 800, theme: "light" },
   { name: "viewer_dark", width: 1280, height: 800, theme: "dark" },
   { name: "viewer_phone", width: 390, height: 780, theme: "light", phone: true },
+  { name: "viewer_projector", width: 1920, height: 1080, theme: "dark", large: true },
 ];
-const kLeastKeyframes = 15, kPatience_ms = 90_000;
+const kLeastKeyframes = 15, kLeastRoom = 10_000, kPatience_ms = 90_000;
 
 /** The viewer is there a moment after the run has begun. */
 async function visit(page) {
@@ -32,13 +33,14 @@ const browser = await puppeteer.launch({
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
 });
 try {
-  for (const { name, width, height, theme, phone = false } of kViews) {
+  for (const { name, width, height, theme, phone = false, large = false } of kViews) {
     const page = await browser.newPage();
     await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
     await page.setViewport({ width, height, isMobile: phone, hasTouch: phone, deviceScaleFactor: phone ? 2 : 1 });
     await visit(page);
-    await page.waitForFunction((least) => window.rtdViewer?.counts.keyframes >= least && rtdViewer.counts.points > 0,
-                               { timeout: kPatience_ms }, kLeastKeyframes);
+    await page.waitForFunction((keyframes, room) => window.rtdViewer?.counts.keyframes >= keyframes && rtdViewer.counts.points > 0 &&
+      rtdViewer.state().robots[0]?.maps[0]?.dense >= room, { timeout: kPatience_ms }, kLeastKeyframes, kLeastRoom);
+    if (large) await page.keyboard.press("l");
     await sleep(2500);
     const path = join(folder, `${name}.webp`);
     await page.screenshot({ path, type: "webp", quality: 80 });

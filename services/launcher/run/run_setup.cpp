@@ -28,7 +28,6 @@ namespace {
 
 /// In realtime no process waits for the detector, so it only gets the processor time that the pose does not need.
 constexpr int kRealtimeNiceness = 10;
-constexpr int kForThePageNiceness = 19;
 
 void check_sections(const std::vector<std::string>& overrides) {
   const std::vector<std::string>& sections = service::config_sections();
@@ -195,8 +194,9 @@ std::vector<std::string> slam_arguments(const RunSetup& setup) {
 
 /// With the base of the robot slam's map has z up.
 std::vector<std::string> dense_arguments(const RunSetup& setup) {
-  std::vector<std::string> arguments;
-  if (setup.dense) arguments = {"--out", setup.out_dir};
+  // Of a room that only the page shows the first view may cost something, all others only idle processor time.
+  std::vector<std::string> arguments = setup.dense ? std::vector<std::string>{"--out", setup.out_dir}
+                                                   : std::vector<std::string>{"--set", "dense.niceness=19"};
   if (setup.services.base.z_up() && setup.services.up.empty()) arguments.emplace_back("--up=0,0,1");
   return arguments;
 }
@@ -348,10 +348,8 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
       service.niceness = kRealtimeNiceness;
   }
   if (setup.viewer_use.shown) {  // no other service waits for it, nor for the room that it shows
-    if (!setup.dense && !process::find_executable("rtd-dense").empty()) {
+    if (!setup.dense && !process::find_executable("rtd-dense").empty())
       plans.push_back(plan(setup, "dense", ServiceRole::kOptional, dense_arguments(setup)));
-      plans.back().niceness = kForThePageNiceness;
-    }
     plans.push_back(plan(setup, "viewer", ServiceRole::kOptional, {"--open"}));
     plans.back().niceness = kRealtimeNiceness;
     plans.back().ends_last = true;

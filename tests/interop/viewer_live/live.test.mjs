@@ -4,13 +4,14 @@
 // The page in Chromium with the real services: a rendered camera, filter, slam and viewer.
 
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { getPriority, tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, afterEach, before, test } from "node:test";
 import { setTimeout } from "node:timers/promises";
 import { launchBrowser, openPage, screenshot, textOf, waitFor } from "../viewer_page/browser.mjs";
-import { Service, startViewer, stopAll } from "./rtd_process.mjs";
+import { kDomain, Service, startViewer, stopAll } from "./rtd_process.mjs";
 
 const kFrames = 120, kRecordedFrames = 300;
 const kLockstep = ["--pace", "lockstep"];  // the mapper is done with a frame when its result is there
@@ -82,6 +83,26 @@ test("the page waits, shows the map as it grows, and has as many points as slam"
   await screenshot(page, "live_map");
 });
 
+test("slam answers what the page asks of a landmark, a keyframe and the pose", async () => {
+  await startRun();
+  startCamera();
+  await waitForWholeMap();
+  const { x, y, width, height } = await (await page.$("#map canvas")).boundingBox();
+  const titles = new Set();
+  for (let i = 0; i < 400 && titles.size < 2; ++i) {
+    await page.mouse.click(x + width * (0.2 + 0.03 * (i % 20)), y + height * (0.25 + 0.025 * Math.floor(i / 20)));
+    const title = await page.$eval("#inspect", (card) => (card.hidden ? "" : card.querySelector("#inspect-title").textContent));
+    if (!/^(Landmark|Keyframe)/.test(title) || titles.has(title.split(" ")[0])) continue;
+    const pattern = title.startsWith("Landmark") ? "\\d+ keyframes; in \\d+ of \\d+ frames.*along the worst axis" : "Features\\d+.*Taken";
+    await waitFor(page, (text) => new RegExp(text, "s").test(document.getElementById("inspect-rows").textContent), pattern);
+    titles.add(title.split(" ")[0]);
+  }
+  assert.ok(titles.has("Landmark"), [...titles].join());
+  const doubt = JSON.parse(spawnSync(process.env.RTD_EXECUTABLE, ["call", "--domain", kDomain, "/slam/ask", "doubt"], { encoding: "utf8" }).stdout);
+  assert.ok(doubt.agree > 30 && doubt.landmarks.length === doubt.disagree, JSON.stringify(doubt));
+  await screenshot(page, "live_asked");
+});
+
 test("a viewer that was killed and started again gives the page the whole map again", async () => {
   const viewer = await startRun();
   startCamera();
@@ -151,6 +172,8 @@ test("a run with --viewer waits for its page, shows the room, and the page stays
   await run.waitFor(/waits until the page is open/);
   page = await openPage(browser, await addressOf(run));
   await waitFor(page, () => rtdViewer.state().robots[0]?.maps[0]?.dense > 1000);
+  const { pid } = await page.evaluate(() => rtdViewer.state().robots[0].services.find(({ name }) => name === "dense"));
+  assert.equal(getPriority(pid), 19, "nothing waits for the room that only the page shows");
   await run.waitFor(/the page stays until Ctrl-C: viewer: http/, 120);
   assert.match(run.output, /frames .*120 used/);
   assert.ok(existsSync(join(out, "map.html")) && !existsSync(join(out, "static_map.ply")));

@@ -71,7 +71,7 @@ TEST_F(DisagreementTest, finds_the_motion_that_many_landmarks_follow) {
   EXPECT_LE(std::ranges::count(found.landmarks.begin() + 40, found.landmarks.end(), 0, &Disagreeing::motion), 2);
 }
 
-TEST_F(DisagreementTest, tells_two_things_apart) {
+TEST_F(DisagreementTest, distinguishes_two_things) {
   add_thing(40, {-0.6, 0, 3.5}, {0.15, 0, 0});
   add_thing(25, {0.6, 0, 3.5}, {-0.1, 0.05, 0});
   const Disagreement found = explained();
