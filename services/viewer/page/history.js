@@ -54,6 +54,12 @@ export class History {
     return moments.findLast(({ stamp_s }) => stamp_s <= wanted_s + 1e-6) ?? moments[0];
   }
 
+  /** The moment of a map that is nearest to a stamp, with an image; undefined: none of that time. */
+  near(at_s, map) {
+    const apart = ({ stamp_s }) => Math.abs(stamp_s - at_s);
+    return this.moments.filter((moment) => moment.image && moment.map === map && apart(moment) < kSameTime_s).sort((a, b) => apart(a) - apart(b))[0];
+  }
+
   /** Up to `most` moments near these stamps whose images show a point, spread over them: {moment, x, y}, where it is in
       the image as shares of it. camera: see pictured(). */
   showing(stamps_s, point, map, camera, most) {

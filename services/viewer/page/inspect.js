@@ -57,7 +57,7 @@ export function describe({ kind, id, point, keyframe, certainty, mover }, tracki
     return { title: `Landmark ${id}`, rows };
   }
   if (kind === "keyframe") {
-    rows.push(["Landmarks", String(keyframe.points?.total ?? 0)], ["Connected to", `${keyframe.others.length} keyframes`]);
+    rows.push(["Landmarks", String(keyframe.points?.total ?? 0)]);
     return { title: `Keyframe ${id}`, rows };
   }
   const speed_mps = Math.hypot(...mover.velocity);

@@ -78,10 +78,10 @@ export class InspectCard {
     const question = questionAbout(found), answer = question && await this.app.questions.ask(robot, question);
     if (!answer || this.asked !== found) return;
     byId("inspect-rows").append(...answerRows(answer, robot.tracking?.stamp_s).flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
-    if (found.kind !== "landmark") return;
-    const seen = robot.history.showing(answer.seen_s, found.point, map.id, answer.camera, kImages);
+    const landmark = found.kind === "landmark", taken = landmark ? undefined : robot.history.near(answer.seen_s[0], map.id);
+    const seen = landmark ? robot.history.showing(answer.seen_s, found.point, map.id, answer.camera, kImages) : taken ? [{ moment: taken }] : [];
     if (seen.length === 0) return;
     showImages(seen);
-    setText(byId("inspect-note"), "Images of the last minutes in which it was seen");
+    setText(byId("inspect-note"), landmark ? "Images of the last minutes in which it was seen" : "Image of when it was taken");
   }
 }

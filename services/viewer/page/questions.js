@@ -49,10 +49,11 @@ export function questionAbout({ kind, keyframe, index }) {
 }
 
 /** Rows of a card. stamp_s: of the newest pose. */
-export function answerRows({ observations, found, visible, features, sigma_m, sigma_deg, seen_s }, stamp_s) {
+export function answerRows({ observations, found, visible, features, connected, sigma_m, sigma_deg, seen_s }, stamp_s) {
   const rows = [], ago = (at_s) => (stamp_s >= at_s ? `${(stamp_s - at_s).toFixed(1)} s ago` : "in an earlier run");
-  if (observations) rows.push(["Observations", `${observations} keyframes; in ${found} of ${visible} frames`]);
-  if (features) rows.push(["Features", String(features)]);
+  const keyframes = (count) => `${count} ${count === 1 ? "keyframe" : "keyframes"}`;
+  if (observations) rows.push(["Observations", `${keyframes(observations)}; in ${found} of ${visible} frames`]);
+  if (features) rows.push(["Features", String(features)], ["Connected to", keyframes(connected)]);
   if (sigma_m > 0) rows.push(["Certain to", `${length(sigma_m)}${sigma_deg > 0 ? `, ${sigma_deg.toFixed(2)}°` : ""} along the worst axis`]);
   if (seen_s.length > 1) rows.push(["First seen", ago(seen_s[0])]);
   return [...rows, [seen_s.length > 1 ? "Last seen" : "Taken", ago(seen_s.at(-1))]];

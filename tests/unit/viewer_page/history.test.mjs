@@ -99,6 +99,7 @@ test("images that saw a landmark: near the stamps of its keyframes, and where it
   const seen = history.showing([2, 3, 4, 5, 6, 40], [0.4, 0, 2], 0, camera, 3);
   assert.deepEqual(seen.map(({ moment, x, y }) => [moment.stamp_s, Number(x.toFixed(6)), y]), [[2, 0.6, 0.5], [4, 0.5, 0.5], [6, 0.4, 0.5]]);
   assert.deepEqual(history.showing([2], [0, 0, -2], 0, camera, 3), [], "behind the camera");
+  assert.deepEqual([history.near(3.2, 0)?.stamp_s, history.near(3.2, 1), history.near(3.4, 0)], [3, undefined, undefined]);
   assert.deepEqual(history.showing([2], [9, 0, 2], 0, camera, 3), [], "outside the image");
 });
 
@@ -107,6 +108,6 @@ test("slam is asked about a landmark by its place, and answers in words", () => 
   assert.deepEqual([questionAbout(keyframe), questionAbout(landmark), questionAbout({ kind: "mover" })], ["keyframe 7", "landmark 7 1.0000 0.0000 0.0000", null]);
   assert.deepEqual(answerRows({ observations: 3, found: 9, visible: 10, sigma_m: 0.0042, seen_s: [1, 2, 4] }, 5),
                    [["Observations", "3 keyframes; in 9 of 10 frames"], ["Certain to", "0.4 cm along the worst axis"], ["First seen", "4.0 s ago"], ["Last seen", "1.0 s ago"]]);
-  assert.deepEqual(answerRows({ features: 900, sigma_m: 0.01, sigma_deg: 0.2, seen_s: [100] }, 5),
-                   [["Features", "900"], ["Certain to", "1.0 cm, 0.20° along the worst axis"], ["Taken", "in an earlier run"]]);
+  assert.deepEqual(answerRows({ features: 900, connected: 1, sigma_m: 0.01, sigma_deg: 0.2, seen_s: [100] }, 5),
+                   [["Features", "900"], ["Connected to", "1 keyframe"], ["Certain to", "1.0 cm, 0.20° along the worst axis"], ["Taken", "in an earlier run"]]);
 });
