@@ -62,6 +62,12 @@ export function answerRows({ observations, found, visible, features, connected, 
 /** In words: which landmarks disagree and what they follow. doubt: an answer. */
 export function doubtInWords({ agree, disagree, motions }) {
   if (disagree === 0) return [];
-  const parts = motions.map(({ landmarks, moved_m }) => `${landmarks} moved ${length(Math.hypot(...moved_m))} together since they were mapped`);
-  return [`${disagree} landmarks disagree with it, ${agree} agree${parts.length > 0 ? `; of the former ${parts.join(", ")}` : ""}.`];
+  const said = [`${disagree} landmarks disagree with it, ${agree} agree.`];
+  const groups = motions.map(({ landmarks }) => landmarks), ways = motions.map(({ moved_m }) => length(Math.hypot(...moved_m)));
+  if (groups.length === 1) said.push(`Of the former, ${groups[0]} moved together, ${ways[0]} since they were mapped.`);
+  if (groups.length > 1) said.push(`Of the former, groups of ${listed(groups)} moved ${listed(ways)} since they were mapped.`);
+  return said;
 }
+
+/** "80, 41 and 32" */
+const listed = (items) => [items.slice(0, -1).join(", "), items.at(-1)].join(" and ");

@@ -28,7 +28,7 @@ test("a doubtful pose is explained, and becomes an event", async () => {
   server.robots[0].state = "doubtful";
   await waitFor(page, () => /Moving now: person/.test(document.getElementById("notice-detail").textContent));
   await waitFor(page, () => [...document.querySelectorAll("#events .event")].some((node) => /tracking: doubtful/.test(node.textContent)));
-  await waitFor(page, () => /38 landmarks disagree with it, 41 agree; of the former 30 moved 12.0 cm together/.test(document.getElementById("notice-detail").textContent));
+  await waitFor(page, () => /38 landmarks disagree with it, 41 agree. Of the former, 30 moved together, 12.0 cm/.test(document.getElementById("notice-detail").textContent));
   await waitFor(page, () => !document.getElementById("doubt-key").hidden && document.getElementById("disagree").textContent === "38");
   const drawn = await page.$eval("#image", (canvas) => {
     const { data } = canvas.getContext("2d").getImageData(380, 230, 120, 90);

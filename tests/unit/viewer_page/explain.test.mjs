@@ -23,7 +23,9 @@ test("a doubtful pose is explained with its numbers, one that is ok is not", () 
 test("what disagrees is said while the answer is fresh", () => {
   const doubt = { stamp_s: 9.8, agree: 41, disagree: 38, motions: [{ landmarks: 30, moved_m: [0.12, 0, 0] }] };
   const said = (stamp_s) => reasons({ ...robot({ state: "doubtful", stamp_s }), overlays: { doubt } }).join();
-  assert.match(said(10), /38 landmarks disagree with it, 41 agree; of the former 30 moved 12.0 cm together since they were mapped\./);
+  assert.match(said(10), /38 landmarks disagree with it, 41 agree\.,Of the former, 30 moved together, 12.0 cm since they were mapped\./);
+  doubt.motions.push({ landmarks: 9, moved_m: [0, 0, 0.05] });
+  assert.match(said(10), /Of the former, groups of 30 and 9 moved 12.0 cm and 5.0 cm since they were mapped\./);
   assert.doesNotMatch(said(20), /disagree/);
 });
 
