@@ -11,6 +11,7 @@
 #include <fastdds/dds/publisher/qos/DataWriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
+#include <fastdds/rtps/common/LocatorList.hpp>
 #include <fastdds/rtps/common/SerializedPayload.hpp>
 #include <fastdds/rtps/common/WriteParams.hpp>
 #include <fastdds/rtps/transport/ChainingTransport.hpp>
@@ -18,6 +19,7 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -108,13 +110,28 @@ class DiscoveryAdapter : public dds::DomainParticipantListener, public Discovery
 };
 
 /// A transport that sends by the one behind it, unchanged. What comes is for receive().
+///
+/// Opens what Fast DDS has not opened before it sends there: version 3.1 as Debian builds it ends the process otherwise
+/// (an assertion of its statistics, as in eProsima/Fast-DDS#3285). Fast DDS opens and sends under one lock.
 class PassingTransport : public transports::ChainingTransport {
  public:
   using ChainingTransport::ChainingTransport;
+  bool OpenOutputChannel(transports::SendResourceList& senders, const rtps::Locator_t& to) override {
+    const bool open = ChainingTransport::OpenOutputChannel(senders, to);
+    if (open) open_.insert(to);
+    return open;
+  }
   bool send(rtps::SenderResource* sender, const std::vector<transports::NetworkBuffer>& buffers, std::uint32_t bytes,
             rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
             const std::chrono::steady_clock::time_point& timeout) override {
-    return sender->send(buffers, bytes, begin, end, timeout);
+    std::vector<rtps::Locator_t> all;
+    for (; *begin != *end; ++*begin) all.push_back(**begin);
+    for (const rtps::Locator_t& to : all) {
+      transports::SendResourceList none;  // all sockets are there
+      if (IsLocatorSupported(to) && open_.count(to) == 0) OpenOutputChannel(none, to);
+    }
+    rtps::Locators first(all.begin()), last(all.end());
+    return sender->send(buffers, bytes, &first, &last, timeout);
   }
   bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result) const override {
     return ChainingTransport::transform_remote_locator(remote, result) || reach(remote, result);
@@ -126,6 +143,9 @@ class PassingTransport : public transports::ChainingTransport {
   }
   /// By which address to send to one that the transport behind does not reach.
   virtual bool reach(const rtps::Locator_t& /*remote*/, rtps::Locator_t& /*result*/) const { return false; }
+
+ private:
+  std::set<rtps::Locator_t> open_;
 };
 
 /// Heartbeats of a writer, and how soon it repairs.
