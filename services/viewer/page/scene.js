@@ -227,10 +227,12 @@ export class Scene {
     else this.#resumeLater();
   }
 
-  /** How long the last drawing took, as far as the screen shows: while the driver is behind, all the time since then. */
+  /** How long the last drawing took, as far as the screen shows: while the driver is behind, all the time since then, but
+      for a pause that was made on purpose. */
   #lastTook_ms(now_ms) {
-    const waited_ms = now_ms - this.asked_ms;
-    return waited_ms > kOneRefresh_ms ? now_ms - (this.drawn_ms ?? -Infinity) : Math.max(0, waited_ms);
+    const waited_ms = now_ms - this.asked_ms, drawn_ms = this.drawn_ms ?? -Infinity;
+    const behind = waited_ms > kOneRefresh_ms && this.asked_ms - drawn_ms < 2 * kOneRefresh_ms;
+    return behind ? now_ms - drawn_ms : Math.max(0, waited_ms);
   }
 
   #pointCount() {
