@@ -39,7 +39,7 @@ try {
     await page.setViewport({ width, height, isMobile: phone, hasTouch: phone, deviceScaleFactor: phone ? 2 : 1 });
     await visit(page);
     await page.waitForFunction((keyframes, room) => window.rtdViewer?.counts.keyframes >= keyframes && rtdViewer.counts.points > 0 &&
-      rtdViewer.state().robots[0]?.maps[0]?.dense >= room, { timeout: kPatience_ms }, kLeastKeyframes, kLeastRoom);
+      rtdViewer.state().robots[0]?.maps[0]?.dense >= room && rtdViewer.fps > 0 && !document.getElementById("image").hidden, { timeout: kPatience_ms }, kLeastKeyframes, kLeastRoom);
     if (large) await page.keyboard.press("l");
     await sleep(2500);
     const path = join(folder, `${name}.webp`);

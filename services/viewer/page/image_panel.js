@@ -8,6 +8,7 @@ import { byId, setText } from "./dom.js";
 import { expandMask, toBitmap } from "./decode.js";
 import { DepthPicture } from "./depth_picture.js";
 import { count } from "./format.js";
+import { stackLevels } from "./geometry.js";
 import { kContradicting, kKept, kRemoved } from "./palette.js";
 
 const kMoving = [239, 68, 68, 105], kUnknown = [245, 158, 11, 60];
@@ -17,7 +18,7 @@ const kColorOf = {
   people: (label) => kPeople[(label - 1) % kPeople.length],
 };
 const kFeatureRadius_px = 1.7;   // on the screen
-const kFont_px = 12;
+const kFont_px = 12, kLarge = 1.4;
 
 export class ImagePanel {
   /** onDrawn(bitmap): an image is shown; onSwitch(): something else is wanted; pause_ms(): least time between two images. */
@@ -182,19 +183,24 @@ export class ImagePanel {
 
   #drawBoxes(overlay) {
     if (!overlay) return;
-    const { context } = this, size = kFont_px * this.scale;
+    const { context } = this, size = kFont_px * this.scale * (this.settings.large ? kLarge : 1), height = 1.4 * size;
     context.lineWidth = 1.5 * this.scale;
     context.font = `600 ${size}px system-ui, sans-serif`;
     context.textBaseline = "top";
-    for (const { label, score, x, y, w, h } of overlay.boxes) {
-      const text = `${label} ${Math.round(100 * score)} %`, top = Math.max(0, y - 1.4 * size);
-      context.strokeStyle = "#fbbf24";
+    context.strokeStyle = "#fbbf24";
+    const labels = overlay.boxes.map(({ label, score, x, y, w, h }) => {
       context.strokeRect(x, y, w, h);
+      const text = `${label} ${Math.round(100 * score)} %`, width = context.measureText(text).width + 0.8 * size;
+      return { text, x: x + width / 2, y: Math.max(0, y - height), width, height };
+    });
+    const levels = stackLevels(labels);
+    labels.forEach(({ text, x, y, width }, i) => {
+      const left = x - width / 2, top = y + levels[i] * height;
       context.fillStyle = "rgba(20, 16, 4, 0.75)";
-      context.fillRect(x, top, context.measureText(text).width + 0.8 * size, 1.4 * size);
+      context.fillRect(left, top, width, height);
       context.fillStyle = "#fde68a";
-      context.fillText(text, x + 0.4 * size, top + 0.2 * size);
-    }
+      context.fillText(text, left + 0.4 * size, top + 0.2 * size);
+    });
   }
 
   #describe() {

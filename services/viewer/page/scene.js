@@ -211,6 +211,7 @@ export class Scene {
     this.canvas.setAttribute("role", "application");
     this.canvas.setAttribute("aria-label", "3D map. Arrow keys move the view, plus and minus zoom, F shows everything.");
     this.canvas.addEventListener("webglcontextrestored", () => this.applySettings());
+    this.canvas.style.visibility = "hidden";   // black until something is drawn
     this.container.prepend(this.canvas);
   }
 
@@ -246,6 +247,7 @@ export class Scene {
     this.drawn_ms = now_ms;
     spreadLabels([...this.robots.values()].flatMap((robot) => robot.labels()), this.camera);
     this.renderer.render(this.three, this.camera);
+    this.canvas.style.visibility = "";
     this.rate.count(performance.now());
     this.measured += 1;
     const tracking = followed?.drawnTracking;
