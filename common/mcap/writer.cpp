@@ -165,7 +165,7 @@ void Writer::write(const Message& message) {
     append(record);
   } else {
     const std::uint64_t size = kFrameBytes + 22 + message.data.size();
-    if (!chunk_.empty() && chunk_.records().size() + size > options_.chunk_size) end_chunk();
+    if (chunk_.records().size() + size > options_.chunk_size) end_chunk();
     if (options_.self_contained_chunks) repeat_definitions(message.channel_id);
     chunk_.add(message);
   }
@@ -198,7 +198,7 @@ void Writer::write(const Metadata& metadata) {
 
 void Writer::end_chunk() {
   require_open();
-  if (chunk_.empty()) return;
+  if (chunk_.message_count() == 0) return;  // what is defined so far waits for its first message
   const ByteView records = chunk_.records();
   const std::uint32_t crc = io::crc32(records);
   const ByteView body = compress(options_.compression, options_.compression_level, records, compressed_);
@@ -228,6 +228,9 @@ void Writer::end_chunk() {
 void Writer::close() {
   if (closed_) return;
   end_chunk();
+  append(chunk_.records());  // defined, but never used: no chunk, as there are readers that refuse one without messages
+  chunk_.clear();
+  defined_in_chunk_.clear();
   Bytes end;
   append_record(end, DataEnd{data_crc_});
   SummarySection summary(end, offset_, padding());

@@ -85,7 +85,7 @@ class Writer {
   void write(const Attachment& attachment);
   void write(const Metadata& metadata);
 
-  /// Puts the open chunk, if any, and its index into the sink with one append().
+  /// Puts the open chunk, if it has a message, and its index into the sink with one append().
   void end_chunk();
   std::uint64_t open_chunk_bytes() const { return chunk_.records().size(); }
   std::uint64_t open_chunk_messages() const { return chunk_.message_count(); }

@@ -100,7 +100,7 @@ test("the protocol lists both robots, and each has as many points as its slam", 
     const whole = () => robot.tracking?.seq === kFrames[name] - 1 && pointsOf(robot) === robot.tracking.landmarks;
     await until(() => whole() && robot.tracking.landmarks > kFewest, `the whole map of ${name}`);
     assert.deepEqual(robot.commands.filter((command) => command.startsWith("/slam/")).sort(),
-                     ["/slam/load_map", "/slam/localize_only", "/slam/reset", "/slam/save_map"]);
+                     ["/slam/ask", "/slam/load_map", "/slam/localize_only", "/slam/reset", "/slam/save_map"]);
   }
   assert.notEqual(pointsOf(client.robot("anna")), pointsOf(client.robot("bert")), "two different maps");
 });

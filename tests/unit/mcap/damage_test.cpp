@@ -166,13 +166,16 @@ TEST_P(BitFlips, each_single_one_is_reported_and_costs_one_chunk_at_most) {
   }
 }
 
+/// Behind the header: without it a reader looks for the next record, which may be one inside the first chunk. No CRC
+/// covers that one alone, and the problems say so.
 TEST_P(BitFlips, several_at_once_are_reported_too) {
   const Bytes whole = file();
+  constexpr std::size_t kHeaderEnd = 33;
   std::mt19937 random(2);
   for (int i = 0; i < 10000; ++i) {
     Bytes bytes = whole;
     for (std::size_t flips = 2 + random() % 6; flips > 0; --flips) {
-      const std::size_t bit = random() % (bytes.size() * 8);
+      const std::size_t bit = 8 * kHeaderEnd + random() % (8 * (bytes.size() - kHeaderEnd));
       bytes[bit / 8] ^= std::byte{1} << bit % 8;
     }
     if (bytes == whole) continue;

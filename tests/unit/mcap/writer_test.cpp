@@ -78,6 +78,22 @@ TEST(Writer, ends_a_chunk_on_request) {
   EXPECT_EQ(stream(sink.bytes()).messages, messages);
 }
 
+TEST(Writer, makes_no_chunk_without_messages) {
+  io::MemorySink sink;
+  Writer writer(sink);
+  write_all(writer, sample_messages(3, 100));
+  writer.end_chunk();
+  writer.add(Channel{0, 0, "/silent", "cdr"});
+  writer.end_chunk();
+  writer.close();
+  const io::MemorySource source(sink.bytes());
+  const IndexedReader reader(source);
+  ASSERT_EQ(reader.summary().chunk_indexes.size(), 1U);
+  EXPECT_GT(reader.summary().chunk_indexes[0].message_index_length, 0U);
+  EXPECT_EQ(reader.problems().total(), 0U);
+  EXPECT_EQ(reader.summary().channels.rbegin()->second.topic, "/silent");
+}
+
 TEST(Writer, continues_after_a_full_disk_without_loss_or_repetition) {
   const auto messages = sample_messages(200, 100);
   SmallSink sink(5000);
