@@ -39,9 +39,10 @@ try {
     await page.setViewport({ width, height, isMobile: phone, hasTouch: phone, deviceScaleFactor: phone ? 2 : 1 });
     await visit(page);
     await page.waitForFunction((keyframes, room) => window.rtdViewer?.counts.keyframes >= keyframes && rtdViewer.counts.points > 0 &&
-      rtdViewer.state().robots[0]?.maps[0]?.dense >= room && rtdViewer.fps > 0 && !document.getElementById("image").hidden, { timeout: kPatience_ms }, kLeastKeyframes, kLeastRoom);
+      rtdViewer.state().robots[0]?.maps[0]?.dense >= room && !document.getElementById("image").hidden, { timeout: kPatience_ms, polling: 200 }, kLeastKeyframes, kLeastRoom);
     if (large) await page.keyboard.press("l");
-    await sleep(2500);
+    await sleep(1500);
+    await page.evaluate(() => rtdViewer.measureFps(1));   // a slow driver has then drawn all that is there
     const path = join(folder, `${name}.webp`);
     await page.screenshot({ path, type: "webp", quality: 80 });
     console.log(path);
