@@ -89,7 +89,7 @@ function includeKeyframes(map, bounds) {
   return bounds;
 }
 
-/** How many heights each rectangle {x (middle), y (its lowest), width, height} goes on in y, so that it covers none before it. */
+/** By how many heights each rectangle {x (middle), y (its lowest), width, height} must move along y to cover none before it. */
 export function stackLevels(rectangles) {
   const placed = [];
   const covers = (a, b) => Math.abs(a.x - b.x) < (a.width + b.width) / 2 && a.y < b.y + b.height && b.y < a.y + a.height;
