@@ -26,10 +26,10 @@ std::vector<SampleMessage> messages_with_a_gap() {
   return messages;
 }
 
-const ChannelReport& channel(const RecordingReport& report, const std::string& topic) {
+const ChannelReport& channel(const RecordingReport& report, const char* topic) {
   for (const ChannelReport& entry : report.channels)
     if (entry.channel.topic == topic) return entry;
-  throw std::runtime_error("no " + topic);
+  throw std::runtime_error(std::string("no ") + topic);
 }
 
 RecordingReport report_of(const io::Bytes& file, const ReportOptions& options = {}) {
