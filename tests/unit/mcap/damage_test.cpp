@@ -13,6 +13,7 @@
 namespace rtd::mcap {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 struct Shape {
@@ -166,23 +167,26 @@ TEST_P(BitFlips, each_single_one_is_reported_and_costs_one_chunk_at_most) {
   }
 }
 
-/// Behind the header: without it a reader looks for the next record, which may be one inside the first chunk. No CRC
-/// covers that one alone, and the problems say so.
+/// Where a record's length is damaged a reader looks for the next record, which may be one inside a chunk: no CRC covers
+/// that one alone. It happens to two or three files in 10,000, and the problems say that messages may be wrong.
 TEST_P(BitFlips, several_at_once_are_reported_too) {
   const Bytes whole = file();
-  constexpr std::size_t kHeaderEnd = 33;
+  int doubtful = 0;
   std::mt19937 random(2);
   for (int i = 0; i < 10000; ++i) {
     Bytes bytes = whole;
     for (std::size_t flips = 2 + random() % 6; flips > 0; --flips) {
-      const std::size_t bit = 8 * kHeaderEnd + random() % (8 * (bytes.size() - kHeaderEnd));
+      const std::size_t bit = random() % (bytes.size() * 8);
       bytes[bit / 8] ^= std::byte{1} << bit % 8;
     }
     if (bytes == whole) continue;
     const ReadBack result = stream(bytes);
     ASSERT_FALSE(result.problems.empty()) << "round " << i;
-    ASSERT_TRUE(is_part_of(result.messages, messages_)) << "round " << i << '\n' << texts(result.problems);
+    if (is_part_of(result.messages, messages_)) continue;
+    ++doubtful;
+    ASSERT_THAT(texts(result.problems), HasSubstr("not in a chunk with its own CRC may be wrong")) << "round " << i;
   }
+  EXPECT_LE(doubtful, 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, BitFlips,
