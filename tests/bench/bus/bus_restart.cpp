@@ -159,8 +159,8 @@ class Campaign {
     return gaps_ms;
   }
 
-  /// Files of killed publishers that are still there after a further start, or two: the first one leaves the cleaning to
-  /// a process elsewhere that has begun with it at that moment.
+  /// Files of killed publishers that are still there after a further start, or two: the first one leaves the cleaning
+  /// to a process elsewhere that has begun with it at that moment.
   std::vector<std::string> leftovers() {
     std::this_thread::sleep_for(6s);  // until the subscriber has forgotten the dead, and no file is young
     return after_a_start().empty() ? std::vector<std::string>() : after_a_start();
