@@ -15,7 +15,7 @@ const kViews = [
   { name: "viewer_phone", width: 390, height: 780, theme: "light", phone: true },
   { name: "viewer_projector", width: 1920, height: 1080, theme: "dark", large: true },
 ];
-const kLeastKeyframes = 15, kLeastRoom = 10_000, kPatience_ms = 90_000;
+const kLeastKeyframes = 15, kLeastRoom = 10_000, kLeastRemoved = 100, kPatience_ms = 90_000;
 
 /** The viewer is there a moment after the run has begun. */
 async function visit(page) {
@@ -43,8 +43,10 @@ try {
     if (large) await page.keyboard.press("l");
     await sleep(1500);
     await page.evaluate(() => rtdViewer.measureFps(1));   // a slow driver has then drawn all that is there
+    await page.waitForFunction((removed) => Number(document.getElementById("removed").textContent.match(/\d+/)?.[0]) >= removed,
+                               { timeout: kPatience_ms, polling: 50 }, kLeastRemoved);   // people are in view
     const path = join(folder, `${name}.webp`);
-    await page.screenshot({ path, type: "webp", quality: 80 });
+    await page.screenshot({ path, type: "webp", quality: 60 });
     console.log(path);
     await page.close();
   }
