@@ -57,7 +57,6 @@ class ServesBoth : public BusBackend {
   std::mutex mutex_;
   std::shared_ptr<BusBackend> serving_;
 };
-
 #endif
 
 #ifdef RTD_HAVE_CYCLONEDDS

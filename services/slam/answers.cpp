@@ -49,7 +49,7 @@ std::optional<Question> parse_question(const std::string& text) {
   Eigen::Vector3d& p = question.p_camera;
   if (about == "landmark") words >> p.x() >> p.y() >> p.z();
   const bool known = about == "doubt" || about == "keyframe" || about == "landmark";
-  if (!known || words.fail() || (words >> rest && !rest.empty())) return std::nullopt;
+  if (!known || words.fail() || words >> rest) return std::nullopt;
   question.about = about == "doubt"      ? Question::About::kDoubt
                    : about == "keyframe" ? Question::About::kKeyframe
                                          : Question::About::kLandmark;

@@ -29,8 +29,9 @@ std::string bytes(std::uint64_t number) {
   return std::to_string(number) + " B";
 }
 
-std::string interface(const std::string& address, const std::string& attributes) {
-  return "<NetworkInterface address=\"" + address + "\" " + attributes + "/>";
+std::string interface(const std::string& address, const std::string& multicast, bool preferred) {
+  return "<NetworkInterface address=\"" + address + "\" multicast=\"" + multicast + "\"" +
+         (preferred ? " priority=\"10\"" : "") + "/>";
 }
 
 /// Loopback has no multicast flag in Linux, but carries it; so does Fast DDS on 127.0.0.1. Peers are asked through the
@@ -44,12 +45,9 @@ std::string interfaces(const NetworkOptions& network, const std::vector<std::str
                    std::to_string(addresses.size()) + " are named");
   }
   addresses.resize(std::min(addresses.size(), kMaxInterfaces - 1));
-  const std::string first = R"( priority="10")";
-  std::string all = interface("127.0.0.1", (network.multicast ? R"(multicast="true")" : R"(multicast="false")") +
-                                               (network.loopback_only ? first : std::string()));
+  std::string all = interface("127.0.0.1", network.multicast ? "true" : "false", network.loopback_only);
   for (const std::string& address : addresses)
-    all += interface(address, (network.multicast ? R"(multicast="default")" : R"(multicast="false")") +
-                                  (network.loopback_only ? std::string() : first));
+    all += interface(address, network.multicast ? "default" : "false", !network.loopback_only);
   return element("Interfaces", all);
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/recordings/reader.hpp"
 #include "common/ros2/message_json.hpp"
+#include "common/ros2/names.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/frames_table.hpp"
 
@@ -17,9 +18,9 @@ using test_support::Links;
 using ::testing::Contains;
 using ::testing::IsSupersetOf;
 
-std::string dds_type(const std::string& plain) {
-  const std::size_t slash = plain.find('/');
-  return plain.substr(0, slash) + "::msg::dds_::" + plain.substr(slash + 1) + "_";
+/// "nav_msgs/Odometry", as a recording has it.
+std::string dds_type(std::string plain) {
+  return ros2::dds_type(plain.insert(plain.find('/'), "/msg"));
 }
 
 /// Adds the frames of all headers in a message. A header that names none has no frame.
@@ -47,7 +48,7 @@ TEST(RunFrames, are_those_of_the_table) {
     if (topic.name.starts_with("/")) topics.push_back(topic.name);
   reader->play(topics);
   while (const auto message = reader->next()) {
-    add_links(ros2::message_json(dds_type(message->type), message->bytes, 100), seen["rt" + message->topic]);
+    add_links(ros2::message_json(dds_type(message->type), message->bytes, 100), seen[ros2::dds_topic(message->topic)]);
   }
   std::erase_if(seen, [](const auto& entry) { return entry.second.empty(); });
   std::set<std::string> names;

@@ -32,13 +32,6 @@ struct Group {
   std::vector<std::size_t> members;
 };
 
-bool fits(const vision::RgbdProjection& camera, const vision::PoseObservation& observation,
-          const Eigen::Isometry3d& T_camera_world, double max_error_px) {
-  const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
-  return p_camera.z() >= vision::kMinProjectionDepth_m &&
-         vision::rgbd_residual(camera, p_camera, observation.measured).norm() <= max_error_px * observation.sigma_px;
-}
-
 /// Seen from the landmarks that move alike, the camera has another pose than seen from those that rest.
 std::optional<Group> find_group(const PoseEvidence& evidence,
                                 const std::vector<vision::PoseObservation>& observations) {
@@ -51,7 +44,7 @@ std::optional<Group> find_group(const PoseEvidence& evidence,
   Group group;
   std::vector<vision::PoseObservation> alike;  // the others would pull the pose to themselves
   for (std::size_t i = 0; i < observations.size(); ++i) {
-    if (!fits(camera, observations[i], coarse.T_world_camera.inverse(), options.max_error_px)) continue;
+    if (!agrees(camera, observations[i], coarse.T_world_camera.inverse(), options.max_error_px)) continue;
     group.members.push_back(i);
     alike.push_back(observations[i]);
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/tracking/pose_ransac.hpp"
 
+#include <algorithm>
 #include <array>
 #include <opencv2/calib3d.hpp>
 #include <optional>
@@ -21,14 +22,9 @@ Eigen::Vector3d unproject(const vision::RgbdProjection& camera, const vision::Rg
 
 int count_inliers(const vision::RgbdProjection& camera, const std::vector<PoseObservation>& observations,
                   const Eigen::Isometry3d& T_camera_world, double max_error_px) {
-  int inliers = 0;
-  for (const PoseObservation& observation : observations) {
-    const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
-    if (p_camera.z() < vision::kMinProjectionDepth_m) continue;
-    const Eigen::Vector3d residual = vision::rgbd_residual(camera, p_camera, observation.measured);
-    if (residual.squaredNorm() < std::pow(max_error_px * observation.sigma_px, 2)) ++inliers;
-  }
-  return inliers;
+  return static_cast<int>(std::ranges::count_if(observations, [&](const PoseObservation& observation) {
+    return agrees(camera, observation, T_camera_world, max_error_px);
+  }));
 }
 
 /// Three observations drawn for a hypothesis.
@@ -77,6 +73,14 @@ std::optional<Triple> draw(const std::vector<const PoseObservation*>& from, std:
 }
 
 }  // namespace
+
+bool agrees(const vision::RgbdProjection& camera, const PoseObservation& observation,
+            const Eigen::Isometry3d& T_camera_world, double max_error_px) {
+  const Eigen::Vector3d p_camera = T_camera_world * observation.p_world;
+  if (p_camera.z() < vision::kMinProjectionDepth_m) return false;
+  const Eigen::Vector3d residual = vision::rgbd_residual(camera, p_camera, observation.measured);
+  return residual.squaredNorm() < std::pow(max_error_px * observation.sigma_px, 2);
+}
 
 PoseRansacResult estimate_pose_ransac(const vision::RgbdProjection& camera,
                                       const std::vector<PoseObservation>& observations,

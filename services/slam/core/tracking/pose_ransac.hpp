@@ -24,6 +24,10 @@ struct PoseRansacResult {
   int inliers = 0;
 };
 
+/// Whether a pose shows an observation where it was made, within `max_error_px` at the finest octave.
+bool agrees(const vision::RgbdProjection& camera, const vision::PoseObservation& observation,
+            const Eigen::Isometry3d& T_camera_world, double max_error_px);
+
 /// Camera pose from correspondences with many outliers: triples of observations give hypotheses, by least-squares rigid
 /// alignment where there is depth enough, else by P3P; reprojection of all observations counts.
 /// docs/theory/tracking.md, "Reference keyframe and recovery".
