@@ -76,3 +76,51 @@ copy_project() {
     (cd "$root" && xargs -0 -r sh -c 'for f; do [ ! -f "$f" ] || printf "%s\0" "$f"; done' sh) |
     tar -C "$root" --null -T - -c | tar -C "$1/root/rtd-slam" --no-same-owner -x
 }
+
+# try_packages SYSTEM FOLDER: the packages of FOLDER on a system that has never seen the sources.
+try_packages() {
+  local began user="$1"
+  mount_system "$user"
+  mkdir "$user/root/packages"
+  cp "$2"/rtd-slam{,-viewer}_*.deb "$user/root/packages/"
+  inside "$user" apt-get update -qq
+  began=$SECONDS
+  inside "$user" sh -c 'apt-get install -y -qq --no-install-recommends ./packages/*.deb >/dev/null'
+  since "$began" "packages installed"
+  inside "$user" rtd run --source 'synthetic:office?frames=30' --out /root/out --quiet
+  [ "$(grep -c '^[0-9]' "$user/root/out/trajectory.txt")" -gt 20 ] || fail "30 frames gave too few poses"
+  since "$began" "packages installed and 30 frames run"
+  remove_packages "$user"
+  since "$began" "packages installed, run, removed and purged"
+  began=$SECONDS
+  upgrade_packages "$user"
+  remove_packages "$user"
+  since "$began" "packages upgraded, removed and purged"
+}
+
+remove_packages() {
+  local left
+  inside "$1" sh -c 'apt-get remove -y -qq rtd-slam rtd-slam-viewer >/dev/null'
+  [ -f "$1/etc/rtd-slam/rtd-slam.conf" ] || fail "remove took the settings away"
+  inside "$1" sh -c 'apt-get purge -y -qq rtd-slam rtd-slam-viewer >/dev/null'
+  left="$(cd "$1" && find etc usr var/lib/rtd-slam var/cache/rtd-slam -name '*rtd-slam*' 2>/dev/null || true)"
+  [ -z "$left" ] || fail "purge left $left"
+}
+
+# From the same packages with a lower version; the user's settings stay.
+upgrade_packages() {
+  # shellcheck disable=SC2016 # variables of the inner shell, a field of dpkg-query
+  inside "$1" sh -ec 'mkdir older
+    for package in packages/*.deb; do
+      version="$(dpkg-deb -f "$package" Version)"
+      dpkg-deb -R "$package" unpacked
+      sed -i "s/\b$version/0.0.1/" unpacked/DEBIAN/control
+      dpkg-deb -Znone -b unpacked older >/dev/null
+      rm -r unpacked
+    done
+    apt-get install -y -qq --no-install-recommends ./older/*.deb >/dev/null
+    echo "# mine" >>/etc/rtd-slam/rtd-slam.conf
+    apt-get install -y -qq --no-install-recommends ./packages/*.deb >/dev/null'
+  [ "$(inside "$1" dpkg-query -W -f '${Version}' rtd-slam)" != 0.0.1 ] || fail "the packages were not upgraded"
+  grep -q "^# mine" "$1/etc/rtd-slam/rtd-slam.conf" || fail "the upgrade took the user's settings away"
+}

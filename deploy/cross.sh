@@ -13,8 +13,9 @@ usage() {
   cat <<'TEXT'
 Usage: deploy/cross.sh bookworm|trixie [--keep FOLDER] [build [TARGET...] | test [CTEST ARGUMENTS] | package]
   build          builds the targets (default: all) for arm64
-  test           builds all, runs the tests under qemu (default: -L unit), then one clip in lockstep
-  package        builds the Debian packages for arm64
+  test           builds what the tests need, runs them under qemu (default: -L unit), then one clip in lockstep
+  package        builds the Debian packages, then tries them on a fresh system of arm64 under qemu: first pose,
+                 upgrade, remove, purge
   --keep FOLDER  the system with its build is in this folder: made where there is none, and kept
 Needs root and debootstrap. Without a command: test.
 TEXT
@@ -72,8 +73,14 @@ emulate() {
 }
 
 run_tests() {
-  local began=$SECONDS status=0
-  [ $# -gt 0 ] || set -- -L unit
+  local began status=0
+  if [ $# -gt 0 ]; then
+    build
+  else
+    set -- -L unit
+    build rtd_services rtd_unit_tests
+  fi
+  began=$SECONDS
   emulate
   inside "$place" ctest --test-dir build/arm64 -j "$(nproc)" --timeout 1200 --output-on-failure "$@" || status=$?
   since "$began" "tests under qemu"
@@ -109,14 +116,14 @@ command="${1:-test}"
 [ $# -eq 0 ] || shift
 case "$command" in
   build) build "$@" ;;
-  test)
-    build
-    run_tests "$@"
-    ;;
+  test) run_tests "$@" ;;
   package)
     build rtd_packages
     inside "$place" sh -c 'cd build/arm64 && cpack -G DEB >cpack.log 2>&1 || { tail -20 cpack.log >&2; exit 1; }'
     ls -l "$place"/root/rtd-slam/build/arm64/packages/*.deb
+    emulate
+    install_system "$work/user" "$system" arm64
+    try_packages "$work/user" "$place/root/rtd-slam/build/arm64/packages"
     ;;
   *) usage >&2 && exit 2 ;;
 esac

@@ -6,6 +6,7 @@
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
 #   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL])
 #     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.
+#     The targets rtd_unit_tests, rtd_component_tests and so on build all tests of a label.
 #   rtd_bench(NAME SOURCES... LIBS...)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -95,6 +96,10 @@ function(rtd_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} rtd_test_main)
   rtd_common_target(${name})
+  if(NOT TARGET rtd_${ARG_LABEL}_tests)
+    add_custom_target(rtd_${ARG_LABEL}_tests)
+  endif()
+  add_dependencies(rtd_${ARG_LABEL}_tests ${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/tests")
   # The checks themselves need not be fast, what they check keeps its optimisation.
   if(NOT ARG_LABEL STREQUAL "dataset")

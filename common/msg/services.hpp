@@ -16,14 +16,21 @@ struct NamedService {
   const char* help;               ///< one line
   bool started_by_run = true;     ///< `rtd run` starts it, always or by an option
   bool in_package_of_all = true;  ///< false: installed by a package of its own
+  bool in_every_run = false;      ///< `rtd run` without options starts it
 };
 
 /// The services, in the order in which a frame passes them.
 inline constexpr std::array<NamedService, 9> kServices{{
-    {"camera", "rtd-camera", "Publish the frames of a source"},
-    {"detector", "rtd-detector", "Detect people and objects in images"},
-    {"filter", "rtd-filter", "Extract features and find those on moving objects"},
-    {"slam", "rtd-slam", "Track the camera and build the map"},
+    {.name = "camera", .executable = "rtd-camera", .help = "Publish the frames of a source", .in_every_run = true},
+    {.name = "detector",
+     .executable = "rtd-detector",
+     .help = "Detect people and objects in images",
+     .in_every_run = true},
+    {.name = "filter",
+     .executable = "rtd-filter",
+     .help = "Extract features and find those on moving objects",
+     .in_every_run = true},
+    {.name = "slam", .executable = "rtd-slam", .help = "Track the camera and build the map", .in_every_run = true},
     {"dense", "rtd-dense", "Fuse a dense static map"},
     {"record", "rtd-record", "Record topics to MCAP files; recover and join recordings"},
     {"replay", "rtd-replay", "Replay a recording"},

@@ -17,6 +17,8 @@
 #include <csignal>
 #include <cstddef>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -259,6 +261,17 @@ void PosixProcessHost::receive(ProcessId sender, std::string_view text) {
 std::uint64_t PosixProcessHost::signs_of_life(ProcessId process) const {
   const auto found = children_.find(process);
   return found == children_.end() || found->second.ending ? 0 : found->second.signs_of_life;
+}
+
+std::chrono::milliseconds PosixProcessHost::waited_for_processor(ProcessId process) const {
+  std::chrono::nanoseconds all{};
+  std::error_code error;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task", error)) {
+    std::int64_t ran_ns = 0, waited_ns = 0;
+    std::ifstream file(thread.path() / "schedstat");
+    if (file >> ran_ns >> waited_ns) all += std::chrono::nanoseconds(waited_ns);
+  }
+  return std::chrono::duration_cast<std::chrono::milliseconds>(all);
 }
 
 void PosixProcessHost::read_output(Child& child) {

@@ -66,6 +66,7 @@ class PosixProcessHost : public ProcessHost {
   void terminate(ProcessId process) override;
   void kill(ProcessId process) override;
   std::uint64_t signs_of_life(ProcessId process) const override;
+  std::chrono::milliseconds waited_for_processor(ProcessId process) const override;
 
   /// Waits until a child writes or ends, `wake_fd` becomes readable (-1: none) or the time is over; passes on complete
   /// lines.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -51,6 +52,9 @@ class ProcessHost {
   virtual void kill(ProcessId process) = 0;       ///< forces (SIGKILL)
   /// How often the process has said that its work continues. 0: it has not begun, is about to end, or never says it.
   virtual std::uint64_t signs_of_life(ProcessId process) const = 0;
+  /// For how long its threads together were ready to work and had to wait for a processor; 0 where the system does not
+  /// say. One that hangs waits for something else.
+  virtual std::chrono::milliseconds waited_for_processor(ProcessId process) const = 0;
 };
 
 /// User and system time of a process.

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the pipeline in real time beside busy processes or a browser and prints coverage, error and latency.
+"""Runs the pipeline in real time beside busy processes, a browser or a client of the viewer and prints coverage, error
+and latency.
 
 An overload: --busy 6 --own-sessions --lose 0.5 --bursts 300
 """
 import argparse
+import asyncio
 import contextlib
 import json
 import os
@@ -20,6 +22,11 @@ import tempfile
 import threading
 import time
 import urllib.request
+
+try:
+    import websockets
+except ImportError:
+    websockets = None
 
 PORT, DEBUG_PORT = 8797, 8798
 PATIENCE_S = 60
@@ -41,7 +48,10 @@ def arguments():
     parser.add_argument("--browser", action="store_true",
                         help="with the viewer, and headless Chromium that shows its page, drawing in software; it waits for "
                              "the run")
-    parser.add_argument("--compare", action="store_true", help="each run also without the browser, in turn")
+    parser.add_argument("--client", action="store_true",
+                        help="with the viewer and rtd-dense, and a client that receives what a page receives and draws "
+                             "nothing, as a page on another computer")
+    parser.add_argument("--compare", action="store_true", help="each run also without the browser or client, in turn")
     parser.add_argument("--runs", default=3, type=int, help="(%(default)s)")
     parser.add_argument("--domain", default=84, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
@@ -83,6 +93,20 @@ class Browser:
         for process in (self.chromium, self.viewer):
             process.terminate()
             process.wait()
+
+
+async def receive_as_page():
+    for _ in range(PATIENCE_S * 10):
+        try:
+            async with websockets.connect(f"ws://127.0.0.1:{PORT}/live", subprotocols=["rtd.viewer.v1"], max_size=None,
+                                          compression=None) as page:
+                await page.send(json.dumps({"op": "options", "dense": True}))
+                async for _ in page:
+                    pass
+        except websockets.exceptions.ConnectionClosed:
+            return  # the viewer has ended
+        except OSError:
+            await asyncio.sleep(0.1)
 
 
 def without_some(source, share, folder):
@@ -160,10 +184,12 @@ def stop_again_and_again(process, burst_s, ended):
                     time.sleep(burst_s)
 
 
-def play(args, out, source):
+def play(args, out, source, with_client):
     """The report of a run in real time."""
     command = [str(args.bin / "rtd"), "run", "--source", source, "--pace", "realtime", "--out", out, "--domain",
                str(args.domain), "--quiet", *args.options]
+    if with_client:
+        command += ["--viewer=exit", "--set", f"viewer.port={PORT}"]
     ended = threading.Event()
     group = SchedulingGroup("run") if args.own_sessions else None
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
@@ -172,6 +198,8 @@ def play(args, out, source):
         bursts = threading.Thread(target=stop_again_and_again, args=(process, args.bursts / 1000, ended))
         if args.bursts > 0:
             bursts.start()
+        if with_client:
+            asyncio.run(receive_as_page())
         output, _ = process.communicate()
         ended.set()
         if args.bursts > 0:
@@ -194,25 +222,27 @@ def text_of(report):
             f"{events['load_taken_back']}")
 
 
-def run(args, out, with_browser):
+def run(args, out, watched):
     source = without_some(args.source, args.lose, out) if args.lose > 0 else args.source
     with tempfile.TemporaryDirectory(prefix="rtd_chromium_", ignore_cleanup_errors=True) as profile:
-        browser = Browser(args, profile) if with_browser else None
-        report = play(args, str(pathlib.Path(out, "run")), source)
+        browser = Browser(args, profile) if watched and args.browser else None
+        report = play(args, str(pathlib.Path(out, "run")), source, watched and args.client)
         if browser is not None:
             browser.close()
-    print(f"{'browser  ' if with_browser else ''}{text_of(report)}", flush=True)
+    print(f"{'watched  ' if watched else ''}{text_of(report)}", flush=True)
 
 
 def main():
     args = arguments()
-    if (args.browser or args.compare) and shutil.which("chromium") is None:
+    if args.browser and shutil.which("chromium") is None:
         sys.exit("busy_runs: no chromium: run deploy/setup.sh --viewers")
+    if args.client and websockets is None:
+        sys.exit("busy_runs: no python3-websockets: run deploy/setup.sh")
     with busy_processes(args.busy, args.own_sessions):
         for _ in range(args.runs):
-            for with_browser in [False, True] if args.compare else [args.browser]:
+            for watched in [False, True] if args.compare else [args.browser or args.client]:
                 with tempfile.TemporaryDirectory(prefix="rtd_busy_") as out:
-                    run(args, out, with_browser)
+                    run(args, out, watched)
 
 
 if __name__ == "__main__":

@@ -9,10 +9,54 @@
 namespace rtd::dense {
 namespace {
 
-constexpr int kBits = 21;  // per axis: 41 km at 2 cm
+constexpr int kBits = CellIndex::kBits;
 constexpr int kMaxSteps = 3;
+constexpr std::uint64_t kInBlock = std::uint64_t{7} << (2 * kBits) | std::uint64_t{7} << kBits | 7U;
+
+std::size_t place_in_block(std::uint64_t key) {
+  return (key >> (2 * kBits) & 7U) << 6U | (key >> kBits & 7U) << 3U | (key & 7U);
+}
 
 }  // namespace
+
+CellIndex::Block* CellIndex::block_of(std::uint64_t key) const {
+  const std::uint64_t block_key = key & ~kInBlock;
+  if (block_key == newest_key_) return newest_;
+  const auto found = blocks_.find(block_key);
+  newest_key_ = block_key;
+  newest_ = found == blocks_.end() ? nullptr : found->second.get();
+  return newest_;
+}
+
+CellIndex::Index CellIndex::find(std::uint64_t key) const {
+  const Block* block = block_of(key);
+  return block == nullptr ? kNone : block->cells[place_in_block(key)];
+}
+
+void CellIndex::set(std::uint64_t key, Index number) {
+  Block* block = block_of(key);
+  if (block == nullptr) {
+    block = newest_ = (blocks_[newest_key_] = std::make_unique<Block>()).get();
+    block->cells.fill(kNone);
+  }
+  Index& cell = block->cells[place_in_block(key)];
+  if (cell == kNone) ++block->filled;
+  cell = number;
+}
+
+void CellIndex::erase(std::uint64_t key) {
+  Block* block = block_of(key);
+  if (block == nullptr || block->cells[place_in_block(key)] == kNone) return;
+  block->cells[place_in_block(key)] = kNone;
+  if (--block->filled > 0) return;
+  blocks_.erase(newest_key_);
+  newest_ = nullptr;
+}
+
+void CellIndex::clear() {
+  blocks_.clear();
+  newest_ = nullptr;
+}
 
 /// kOutside for points that are not finite or farther from the origin than the key can express.
 std::uint64_t VoxelMap::key_of(const Eigen::Vector3f& p_world) const {
@@ -26,14 +70,13 @@ std::uint64_t VoxelMap::key_of(const Eigen::Vector3f& p_world) const {
   return key;
 }
 
-Voxel* VoxelMap::find(std::uint64_t key) {
-  const auto found = index_.find(key);
-  return found == index_.end() ? nullptr : &voxels_[found->second];
+const Voxel* VoxelMap::find(std::uint64_t key) const {
+  const Index found = index_.find(key);
+  return found == CellIndex::kNone ? nullptr : &voxels_[found];
 }
 
 const Voxel* VoxelMap::at(const Eigen::Vector3f& p_world) const {
-  const auto found = index_.find(key_of(p_world));
-  return found == index_.end() ? nullptr : &voxels_[found->second];
+  return find(key_of(p_world));
 }
 
 /// Noise is along the ray: without this, a surface would become as thick as the noise and no mean would reduce it.
@@ -56,7 +99,7 @@ bool VoxelMap::add(const Sample& sample, std::uint32_t frame, AnchorId anchor) {
   Voxel* voxel = surface_along_ray(sample, key);
   if (voxel == nullptr) {
     if (full()) return false;
-    index_.emplace(key, static_cast<Index>(voxels_.size()));
+    index_.set(key, static_cast<Index>(voxels_.size()));
     voxel = &voxels_.emplace_back();
     voxel->key = key;
     voxel->anchor = anchor;
@@ -83,7 +126,7 @@ std::size_t VoxelMap::remove_if(const std::function<bool(Voxel&)>& gone) {
     index_.erase(voxels_[i].key);
     if (i + 1 < voxels_.size()) {
       voxels_[i] = voxels_.back();
-      index_[voxels_[i].key] = static_cast<Index>(i);
+      index_.set(voxels_[i].key, static_cast<Index>(i));
     }
     voxels_.pop_back();
   }
@@ -117,9 +160,12 @@ void VoxelMap::move(const std::function<const Eigen::Isometry3f*(AnchorId)>& mot
   std::vector<char> absorbed(voxels_.size(), 0);
   for (const Index i : arriving) {
     const bool outside = voxels_[i].key == kOutside;
-    const auto [place, free] = outside ? std::pair(index_.end(), false) : index_.emplace(voxels_[i].key, i);
-    if (free) continue;
-    if (!outside) merge(voxels_[place->second], voxels_[i]);
+    Voxel* there = outside ? nullptr : find(voxels_[i].key);
+    if (!outside && there == nullptr) {
+      index_.set(voxels_[i].key, i);
+      continue;
+    }
+    if (there != nullptr) merge(*there, voxels_[i]);
     absorbed[i] = 1;
   }
   if (std::find(absorbed.begin(), absorbed.end(), 1) == absorbed.end()) return;
@@ -127,7 +173,7 @@ void VoxelMap::move(const std::function<const Eigen::Isometry3f*(AnchorId)>& mot
   kept.reserve(voxels_.size());
   for (Index i = 0; i < voxels_.size(); ++i) {
     if (absorbed[i] != 0) continue;
-    index_[voxels_[i].key] = static_cast<Index>(kept.size());
+    index_.set(voxels_[i].key, static_cast<Index>(kept.size()));
     kept.push_back(voxels_[i]);
   }
   voxels_ = std::move(kept);

@@ -36,23 +36,23 @@ namespace {
 constexpr std::array kVerdicts = {"ok   ", "warn ", "FAIL "};  // by Verdict
 
 void check_services(Findings& findings) {
-  std::string missing;
+  std::string missing, left_out;
   std::vector<std::string> found;
   for (const msg::NamedService& service : msg::kServices) {
     if (!process::find_executable(service.executable).empty()) {
       found.emplace_back(service.name);
     } else if (service.in_package_of_all) {
-      missing += std::string(" ") + service.executable;
+      (service.in_every_run ? missing : left_out) += std::string(" ") + service.executable;
     } else {
       findings.push_back({Verdict::kWarn, std::string("services: ") + service.executable + " is not installed; " +
                                               "package rtd-slam-" + service.name + " has it"});
     }
   }
-  findings.push_back(
-      missing.empty()
-          ? Finding{Verdict::kOk, "services: " + msg::word_list(found, " and ") + " found"}
-          : Finding{Verdict::kFail, "services: missing" + missing +
-                                        "; build them with 'cmake --build <build folder> --target rtd_services'"});
+  const std::string cure = "; build them with 'cmake --build <build folder> --target rtd_services'";
+  if (!found.empty()) findings.push_back({Verdict::kOk, "services: " + msg::word_list(found, " and ") + " found"});
+  if (!missing.empty()) findings.push_back({Verdict::kFail, "services: missing" + missing + cure});
+  if (!left_out.empty())
+    findings.push_back({Verdict::kWarn, "services: not there, for some options only:" + left_out + cure});
 }
 
 /// The problems that the bus reports after joining.

@@ -84,6 +84,16 @@ TEST_F(DoctorTest, a_host_that_lacks_nothing_is_exit_code_0) {
                                    HasSubstr("ok   bus: "), Not(HasSubstr("FAIL"))));
 }
 
+TEST_F(DoctorTest, only_what_every_run_starts_must_be_there) {
+  fs::remove(scratch_ / "rtd-dense");
+  EXPECT_EQ(doctor({}), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("warn services: not there, for some options only: rtd-dense; build"),
+                                   HasSubstr("ok   services: camera, ")));
+  fs::remove(scratch_ / "rtd-slam");
+  EXPECT_EQ(doctor({}), 1);
+  EXPECT_THAT(rtd_.output(), HasSubstr("FAIL services: missing rtd-slam; build them with"));
+}
+
 TEST_F(DoctorTest, a_profile_that_is_none_is_exit_code_2) {
   EXPECT_EQ(doctor({"--profile", "lna"}), 2);
   EXPECT_THAT(rtd_.output(), HasSubstr("lan, localhost, secure, wifi"));

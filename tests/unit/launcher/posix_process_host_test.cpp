@@ -121,6 +121,18 @@ TEST_F(PosixProcessHostTest, counts_the_signs_of_life_of_each_child) {
   EXPECT_EQ(watching.signs_of_life(silent), 0U);
 }
 
+TEST_F(PosixProcessHostTest, knows_who_waits_for_a_processor) {
+  const std::string spin = "exec taskset -c 0 sh -c 'while :; do :; done'";
+  const process::ProcessId one = start("a", spin), other = start("b", spin), idle = start("c", "exec sleep 60");
+  const milliseconds give_up = now() + milliseconds(20'000);
+  while (host.waited_for_processor(one) + host.waited_for_processor(other) < milliseconds(300) && now() < give_up)
+    host.wait(milliseconds(20));
+  if (host.waited_for_processor(one) == milliseconds(0)) GTEST_SKIP() << "this kernel keeps no schedstat";
+  EXPECT_LT(now(), give_up);
+  EXPECT_LT(host.waited_for_processor(idle), milliseconds(150));
+  EXPECT_EQ(host.waited_for_processor(999'999'999), milliseconds(0));
+}
+
 TEST_F(PosixProcessHostTest, nothing_outlives_the_launcher) {
   int reported[2];
   ASSERT_EQ(pipe(reported), 0);

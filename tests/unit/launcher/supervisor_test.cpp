@@ -12,6 +12,7 @@ namespace rtd::launcher {
 namespace {
 
 using std::chrono::milliseconds;
+using testing::AllOf;
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -48,6 +49,10 @@ class FakeHost : public process::ProcessHost {
     const auto found = signs.find(names.at(process));
     return found == signs.end() ? 0 : found->second;
   }
+  milliseconds waited_for_processor(process::ProcessId process) const override {
+    const auto found = waited.find(names.at(process));
+    return found == waited.end() ? milliseconds(0) : found->second;
+  }
   void end(const std::string& name, process::ProcessExit exit) {
     for (const auto& [process, process_name] : names) {
       if (process_name == name) newest = process;
@@ -60,6 +65,7 @@ class FakeHost : public process::ProcessHost {
   std::vector<std::string> arguments;  ///< of the last one started
   std::map<process::ProcessId, std::string> names;
   std::map<std::string, std::uint64_t> signs;  ///< of life, by name
+  std::map<std::string, milliseconds> waited;  ///< for a processor, by name
   std::map<process::ProcessId, process::ProcessExit> exits;
   process::ProcessId last_id = 0, newest = 0;
 };
@@ -110,6 +116,21 @@ TEST_F(SupervisorTest, one_that_falls_silent_is_killed_and_restarted_at_once) {
   EXPECT_THAT(reported, Contains("slam hung for 3 s and was killed, restart at once"));
   EXPECT_EQ(restarts("slam"), 1);
   EXPECT_THAT(restarts("detector"), 0) << "has never given a sign of life";
+}
+
+TEST_F(SupervisorTest, one_that_gets_no_processor_is_given_more_time) {
+  start_all();
+  host.signs["slam"] = host.signs["detector"] = 1;
+  advance(milliseconds(10));
+  for (int i = 0; i < 280; ++i) {
+    host.waited["slam"] += milliseconds(70);      // of 100
+    host.waited["detector"] += milliseconds(30);  // most of the time it waits for something else
+    advance(milliseconds(100));
+  }
+  EXPECT_THAT(host.killed, AllOf(Contains("detector"), Not(Contains("slam"))));
+  host.waited["slam"] += milliseconds(1400);
+  advance(milliseconds(2100));
+  EXPECT_THAT(host.killed, Contains("slam")) << "not for ever";
 }
 
 TEST_F(SupervisorTest, a_camera_that_gave_up_before_its_first_frame_is_not_started_again) {

@@ -9,6 +9,7 @@ namespace rtd::launcher {
 namespace {
 
 constexpr int kExitUsageOrConfig = 2, kExitAlreadyRuns = 4;
+constexpr int kMostPatience = 10;  // times as long for one that gets no processor
 constexpr Supervisor::Clock kStoodStill{1000};  // update() is called many times in it
 
 /// "1st", "2nd", "3rd", "4th", ..., "11th".
@@ -66,12 +67,26 @@ void Supervisor::forgive_standstill(Clock now) {
 
 /// Kills one that hangs, or is still there although it was asked to end.
 void Supervisor::watch(Child& child, Clock now) {
-  const std::uint64_t signs = host_.signs_of_life(child.process);
-  if (std::exchange(child.signs_of_life, signs) != signs) child.last_sign = now;
-  const bool hung = options_.hung_after > Clock(0) && signs > 0 && now - child.last_sign >= options_.hung_after;
+  const bool hung = hangs(child, now);
   if (child.asked ? now < child.kill_at : !hung) return;
   child.killed = true;
   host_.kill(child.process);
+}
+
+/// Silent for too long, and not because others took the processors: one that only waits for its turn would be no better
+/// off after a restart.
+bool Supervisor::hangs(Child& child, Clock now) {
+  const std::uint64_t signs = host_.signs_of_life(child.process);
+  if (std::exchange(child.signs_of_life, signs) != signs) {
+    child.last_sign = now;
+    child.waited.reset();
+  }
+  const Clock silent = now - child.last_sign, begin = options_.hung_after / 2;
+  if (options_.hung_after <= Clock(0) || signs == 0 || silent < begin) return false;
+  if (!child.waited) child.waited = host_.waited_for_processor(child.process);
+  if (silent < options_.hung_after) return false;
+  const Clock waited = host_.waited_for_processor(child.process) - *child.waited;
+  return silent >= kMostPatience * options_.hung_after || 2 * waited < silent - begin;
 }
 
 void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {

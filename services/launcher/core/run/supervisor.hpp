@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,8 @@ struct SupervisorOptions {
   std::chrono::milliseconds first_backoff{200};  ///< pause before the restart of one that died young, doubled
   std::chrono::milliseconds max_backoff{2000};
   std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row, at once
-  std::chrono::milliseconds hung_after{3000};     ///< without a sign of life after the first: killed; 0 = never
+  /// Without a sign of life after the first: killed. Ten times as long for one that gets no processor; 0 = never.
+  std::chrono::milliseconds hung_after{3000};
 };
 
 enum class RunOutcome {
@@ -105,6 +107,7 @@ class Supervisor {
     Clock kill_at{};
     std::uint64_t signs_of_life = 0;
     Clock last_sign{};
+    std::optional<Clock> waited;  ///< for a processor, when it had been silent for half of hung_after
   };
 
   void launch(Child& child, Clock now, const std::vector<std::string>& more_arguments = {});
@@ -112,6 +115,7 @@ class Supervisor {
   void on_exit(Child& child, const process::ProcessExit& exit, Clock now);
   void on_death(Child& child, const process::ProcessExit& exit, Clock now);
   void watch(Child& child, Clock now);
+  bool hangs(Child& child, Clock now);
   void forgive_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
   bool continues(const Child& child) const { return child.plan.outlives_run && !rest_ends_; }
