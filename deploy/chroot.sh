@@ -23,7 +23,7 @@ require_chroot() {
 # in_namespace SCRIPT ARGUMENTS...: the script again, where all its processes and mounts end with it.
 in_namespace() {
   [ -z "${RTD_IN_NAMESPACE:-}" ] || return 0
-  RTD_IN_NAMESPACE=1 exec unshare --mount --propagation private --pid --fork --kill-child --mount-proc "$@"
+  RTD_IN_NAMESPACE=1 exec unshare --mount --propagation private --ipc --pid --fork --kill-child --mount-proc "$@"
 }
 
 # The place that apt of this machine takes Debian from.

@@ -116,6 +116,8 @@ function(rtd_test name)
   endif()
   if(RTD_SANITIZE)
     math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * 5")
+  elseif(CMAKE_CROSSCOMPILING)  # under emulation
+    math(EXPR ARG_TIMEOUT "${ARG_TIMEOUT} * 10")
   endif()
   # 77: tests/support/test_main.cpp. COST: what may take long starts first, so that no core waits for it at the end.
   set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL} SKIP_RETURN_CODE 77

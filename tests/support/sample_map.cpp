@@ -86,8 +86,8 @@ class Maker {
   Landmark make_landmark(const Keyframe& keyframe) {
     Landmark landmark;
     landmark.id = contents_.landmarks.size();
-    landmark.position = keyframe.T_world_camera * Eigen::Vector3d(unit(), unit(), 1 + 3 * unit());
-    landmark.normal = Eigen::Vector3d(unit(), unit(), 1).normalized();
+    landmark.position = keyframe.T_world_camera * Eigen::Vector3d{unit(), unit(), 1 + 3 * unit()};
+    landmark.normal = Eigen::Vector3d{unit(), unit(), 1}.normalized();
     landmark.max_distance_m = 2 + unit();
     landmark.min_distance_m = 0.5;
     landmark.static_probability = unit();

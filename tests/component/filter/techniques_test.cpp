@@ -192,7 +192,7 @@ TEST(Techniques, surface_poses_off_leaves_the_camera_to_the_majority) {
   const auto add = [&](int count, const cv::Rect& area, double depth_m, int cluster, double moved_m) {
     std::uniform_real_distribution<double> u(area.x, area.x + area.width), v(area.y, area.y + area.height);
     for (int i = 0; i < count; ++i) {
-      const Eigen::Vector2d pixel(u(random), v(random));
+      const Eigen::Vector2d pixel{u(random), v(random)};
       sightings.push_back(
           {camera.unproject(pixel, depth_m) - Eigen::Vector3d(moved_m, 0, 0), pixel, depth_m, 1.0, cluster});
     }

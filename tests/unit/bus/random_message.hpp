@@ -35,7 +35,8 @@ void randomize(T& value, std::mt19937_64& random) {
   } else if constexpr (std::is_arithmetic_v<T>) {
     value = static_cast<T>(1 + random() % 120);
   } else if constexpr (std::is_same_v<T, std::string>) {
-    value.assign(1 + random() % 12, static_cast<char>('a' + random() % 26));
+    const auto letter = static_cast<char>('a' + random() % 26);
+    value.assign(1 + random() % 12, letter);
   } else if constexpr (IsVector<T>::value) {
     value.resize(1 + random() % 3);
     for (auto& element : value) randomize(element, random);

@@ -89,7 +89,7 @@ TEST(Preintegration, covariance_is_that_of_many_runs) {
   std::normal_distribution<double> normal;
   const auto noisy = [&](const Eigen::Vector3d& value, double density) {
     return Eigen::Vector3d(value + density / std::sqrt(kDt_s) *
-                                       Eigen::Vector3d(normal(random), normal(random), normal(random)));
+                                       Eigen::Vector3d{normal(random), normal(random), normal(random)});
   };
   Preintegration truth({}, kNoise);
   for (int i = 0; i < kSteps; ++i) truth.add(gyro, accel, kDt_s);
@@ -161,7 +161,7 @@ TEST(ImuStream, keeps_a_bounded_number_of_samples) {
 TEST(Rest, shows_which_way_is_up) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  const auto noise = [&] { return Eigen::Vector3d(normal(random), normal(random), normal(random)); };
+  const auto noise = [&] { return Eigen::Vector3d{normal(random), normal(random), normal(random)}; };
   const Eigen::Vector3d up = Eigen::Vector3d(0.1, -0.95, -0.2).normalized();
   ImuStream stream;
   for (int i = 0; i < 200; ++i) {

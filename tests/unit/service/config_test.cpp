@@ -11,6 +11,7 @@ namespace rtd::service {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 struct Nested {
@@ -209,8 +210,9 @@ TEST_F(OptionsTest, a_value_that_is_not_allowed_names_the_option) {
 }
 
 TEST_F(OptionsTest, help_comes_from_the_settings) {
-  EXPECT_THAT(app_.help(), AllOf(HasSubstr("-c,--count INT=1000"), HasSubstr("How many (filter.count)"),
-                                 HasSubstr("Numbers:"), HasSubstr("--mode TEXT:{off,rtd}=rtd")));
+  EXPECT_THAT(app_.help(), AllOf(ContainsRegex(R"(-c,--count INT(=1000| \[1000\]))"), HasSubstr("How many (filter.count)"),
+                                 HasSubstr("Numbers:"), ContainsRegex(R"(--mode TEXT:\{off,rtd\}(=rtd| \[rtd\]))")))
+      << "a default as CLI11 2.1 or 2.4 writes it";
   EXPECT_THAT(app_.help(), ::testing::Not(HasSubstr("nested")));
 }
 

@@ -209,10 +209,10 @@ TEST_F(WorldMoversTest, know_how_well_they_know_it) {
   Vector3d middle(0, 0, 2.5), velocity(0.3, 0, 0);
   for (int i = 0; i < 3000; ++i) {
     velocity +=
-        Vector3d(0.08 * normal(random) - 0.02 * middle.x(), 0, 0.08 * normal(random) - 0.02 * (middle.z() - 2.5));
+        Vector3d{0.08 * normal(random) - 0.02 * middle.x(), 0, 0.08 * normal(random) - 0.02 * (middle.z() - 2.5)};
     velocity *= 0.98;
     middle += 1e-9 * kStepNs * velocity;
-    const Vector3d off(0.03 * normal(random), 0, 0.05 * normal(random));
+    const Vector3d off{0.03 * normal(random), 0, 0.05 * normal(random)};
     const auto movers = step({sight_body(middle + off, 1)});
     ASSERT_EQ(movers.size(), 1U);
     if (i < 30) continue;

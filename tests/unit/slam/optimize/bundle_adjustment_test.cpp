@@ -39,7 +39,7 @@ Scene make_scene(double noise_px) {
   }
   for (int i = 0; i < 150; ++i) {
     const double z = depth(random);
-    scene.truth.points.emplace_back(0.4 * z * side(random), 0.3 * z * side(random), z);
+    scene.truth.points.push_back(Eigen::Vector3d{0.4 * z * side(random), 0.3 * z * side(random), z});
   }
   for (std::uint32_t camera = 0; camera < 5; ++camera) {
     for (std::uint32_t point = 0; point < scene.truth.points.size(); ++point) {
@@ -60,7 +60,7 @@ Scene make_scene(double noise_px) {
         scene.problem.cameras[i].T_world_camera * geometry::se3_exp(0.02 * twist(1, -1, 1, 0.5, 0.5, -0.5));
   }
   for (Eigen::Vector3d& point : scene.problem.points)
-    point += 0.03 * Eigen::Vector3d(side(random), side(random), side(random));
+    point += 0.03 * Eigen::Vector3d{side(random), side(random), side(random)};
   return scene;
 }
 
