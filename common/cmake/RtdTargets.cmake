@@ -27,7 +27,7 @@ target_compile_options(rtd_compile_options INTERFACE -Wall -Wextra -Wpedantic -W
 # g++ 12 warns falsely of "literal" + std::string (GCC bug 105651).
 target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
-# On arm64 g++ tells of each std::pair<double, double> that old compilers passed it otherwise.
+# On arm64 g++ notes of each std::pair<double, double> that old compilers passed it otherwise.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
 endif()
