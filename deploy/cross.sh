@@ -13,7 +13,7 @@ usage() {
   cat <<'TEXT'
 Usage: deploy/cross.sh bookworm|trixie [--keep FOLDER] [build [TARGET...] | test [CTEST ARGUMENTS] | package]
   build          builds the targets (default: all) for arm64
-  test           builds what the tests need, runs them under qemu (default: -L unit), then one clip in lockstep
+  test           builds what the tests need, runs them under qemu (without -L: -L unit), then one clip in lockstep
   package        builds the Debian packages, then tries them on a fresh system of arm64 under qemu: first pose,
                  upgrade, remove, purge
   --keep FOLDER  the system with its build is in this folder: made where there is none, and kept
@@ -22,9 +22,10 @@ TEXT
 }
 
 # The packages of setup.sh: libraries for arm64, programs for this machine.
+# OpenCV for Python is not to be had beside the libraries of arm64: what needs it is skipped.
 packages_for() {
   local package
-  inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-|pocl-|nftables|iproute2|fastdds-tools)' |
+  inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-(opencv|rosbag|sensor-msgs)|pocl-|nftables|iproute2|fastdds-tools)' |
     while read -r package; do
       if [[ "$package" == *-dev ]] &&
         ! inside "$place" apt-cache show --no-all-versions "$package" | grep -q '^Architecture: all$'; then
@@ -74,12 +75,13 @@ emulate() {
 
 run_tests() {
   local began status=0
-  if [ $# -gt 0 ]; then
-    build
-  else
-    set -- -L unit
-    build rtd_services rtd_unit_tests
-  fi
+  case " $* " in
+    *" -L "*) build ;;
+    *)
+      set -- -L unit "$@"
+      build rtd_services rtd_unit_tests
+      ;;
+  esac
   began=$SECONDS
   emulate
   inside "$place" ctest --test-dir build/arm64 -j "$(nproc)" --timeout 1200 --output-on-failure "$@" || status=$?

@@ -91,7 +91,8 @@ void MovingBox::append_to(Geometry& geometry, const Vector3f& position_m, float 
 CarriedBox::CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures)
     : path_(seed, area, kCarryingSpeedMS) {
   SeededRandom random(seed ^ 0xB0BULL);
-  box_.size_m = Vector3f(random.between(0.3F, 0.55F), random.between(0.3F, 0.55F), random.between(0.3F, 0.5F));
+  const float high_m = random.between(0.3F, 0.5F), deep_m = random.between(0.3F, 0.55F);
+  box_.size_m = {random.between(0.3F, 0.55F), deep_m, high_m};
   height_m_ = random.between(0.75F, 1.15F);
   turn_rate_rad_s_ = random.between(-0.7F, 0.7F);
   phase_rad_ = kTwoPiF * random.unit();

@@ -84,8 +84,9 @@ std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures)
     Cuboid cuboid{.T_world_cuboid = upright(piece.position_m, piece.turned_rad), .size_m = piece.size_m};
     cuboid.material = piece.material;
     const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
+    const std::uint64_t texture_seed = random.next();
     cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
-                                 random_style(random, 12.0F), random.next());
+                                 random_style(random, 12.0F), texture_seed);
     for (const Face& face : outer_faces(cuboid)) faces.push_back(face);
   }
   return faces;
