@@ -4,6 +4,7 @@
 
 #include <iosfwd>
 #include <stdexcept>
+#include <string>
 
 #include "common/occupancy/volume.hpp"
 
@@ -18,8 +19,11 @@ class OctomapError : public std::runtime_error {
 inline constexpr int kOctomapCenter = 1 << 15;  ///< key of the cell at the origin
 inline constexpr char kOctomapFirstLine[] = "# Octomap OcTree binary file";
 
+/// Empty, or why this build writes no OctoMap files and what to do.
+std::string octomap_left_out();
+
 /// Binary OctoMap (.bt), written by liboctomap; z is up. The stream's state shows errors. Throws OctomapError where the
-/// build is without liboctomap.
+/// build is without it (octomap_left_out()).
 void write_octomap(std::ostream& out, const Volume& volume);
 
 /// Reads a .bt file of any origin. Large cells come as many small ones, 200 million at most. liboctomap's own reader

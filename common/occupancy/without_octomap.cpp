@@ -4,8 +4,12 @@
 
 namespace rtd::occupancy {
 
+std::string octomap_left_out() {
+  return "this build writes no OctoMap files; install liboctomap-dev, then configure and build again";
+}
+
 void write_octomap(std::ostream& /*out*/, const Volume& /*volume*/) {
-  throw OctomapError("this build writes no OctoMap files; install liboctomap-dev, then configure and build again");
+  throw OctomapError(octomap_left_out());
 }
 
 }  // namespace rtd::occupancy

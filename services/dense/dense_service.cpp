@@ -349,7 +349,10 @@ bool DenseService::write_navigation_maps(const std::string& folder) {
     const std::string path = folder + '/' + name;
     return report_file(path, content, [&] { io::write_file(path, std::function<void(std::ostream&)>(write_to)); });
   };
-  bool written = write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
+  const std::string left_out = occupancy::octomap_left_out();
+  if (!left_out.empty()) SPDLOG_WARN("event=file_left_out path={}/map.bt cause=\"{}\"", folder, left_out);
+  bool written = !left_out.empty() ||
+                 write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
                        [&](std::ostream& file) { write_octomap(file, volume); });
   const std::optional<NavigationGrid> grid = navigation_->grid(volume);
   if (!grid || grid->cells.empty()) {

@@ -165,6 +165,8 @@ int write_page(const MapRequest& request, const slam::MapContents& contents, con
 
 /// Returns the exit code.
 int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
+  if (const std::string left_out = occupancy::octomap_left_out(); request.format == "bt" && !left_out.empty())
+    throw UsageError(left_out);
   if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
   if (is_octomap(request.file)) return export_voxels(request, out, err);
   if (request.format == "pgm")
