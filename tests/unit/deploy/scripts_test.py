@@ -60,9 +60,10 @@ class Progress(unittest.TestCase):
         script = (f'root=/nonexistent; . "{DEPLOY}/environment.sh"; '
                   '{ sleep 16; echo "[32/96] Building a.o"; } | show_progress')
         shown = run("bash", "-c", script, "demo.sh").stdout
-        found = re.search(r"^demo: 32 of 96 steps built, about 0 min (\d+) s to go$", shown, re.MULTILINE)
+        found = re.search(r"^demo: 32 of 96 steps built, about (\d+) min (\d+) s to go$", shown, re.MULTILINE)
         self.assertTrue(found, shown)
-        self.assertAlmostEqual(int(found.group(1)), 2 * 16, delta=6)
+        usual_s = 3 * 16 // int(run("nproc").stdout)  # of as many steps as are a sixth of all
+        self.assertAlmostEqual(60 * int(found.group(1)) + int(found.group(2)), (usual_s + 16) * 64 / 48, delta=6)
 
 
 if __name__ == "__main__":
