@@ -55,7 +55,8 @@ class Generator {
   /// A point with at least two views.
   void add_point(slam::BundleProblem& truth) {
     const double z = 1 + 3 * unit_(random_);
-    const Eigen::Vector3d p_world(0.5 + z * (1.6 * unit_(random_) - 0.8), z * (unit_(random_) - 0.5), z);
+    const double y = z * (unit_(random_) - 0.5), x = 0.5 + z * (1.6 * unit_(random_) - 0.8);
+    const Eigen::Vector3d p_world(x, y, z);
     const double max_distance_m = p_world.norm() * std::pow(slam::kScaleFactor, 5 * unit_(random_));
     const auto index = static_cast<std::uint32_t>(truth.points.size());
     const std::size_t before = truth.observations.size();

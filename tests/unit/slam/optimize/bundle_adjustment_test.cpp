@@ -157,8 +157,9 @@ TEST(BundleAdjustment, weights_decide_between_contradicting_observations) {
   for (std::size_t i = 2; i < 5; ++i) EXPECT_LT(camera_error_m(scene, i), 2e-4);
 }
 
-test_support::BundleScene make_local_scene() {
+test_support::BundleScene make_local_scene(std::uint64_t seed = 1) {
   test_support::BundleSceneOptions options;
+  options.seed = seed;
   options.keyframes = 8;
   options.fixed_keyframes = 2;
   options.landmarks = 400;
@@ -166,18 +167,20 @@ test_support::BundleScene make_local_scene() {
 }
 
 TEST(BundleAdjustment, own_solver_finds_the_minimum_that_ceres_finds) {
-  test_support::BundleScene dense = make_local_scene(), sparse = dense;
-  BundleOptions options{30, 0};
-  const BundleSummary own = adjust_bundle(dense.problem, options);
-  options.solver = BundleSolver::kSparse;
-  const BundleSummary ceres = adjust_bundle(sparse.problem, options);
-  EXPECT_NEAR(own.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost);
-  EXPECT_NEAR(own.final_cost, ceres.final_cost, 2e-4 * ceres.final_cost);
-  EXPECT_NEAR(own.outliers, ceres.outliers, 3);
-  for (std::size_t i = 0; i < dense.problem.cameras.size(); ++i) {
-    const Eigen::Isometry3d T_own_ceres =
-        dense.problem.cameras[i].T_world_camera.inverse() * sparse.problem.cameras[i].T_world_camera;
-    EXPECT_LT(T_own_ceres.translation().norm(), 2e-4) << "camera " << i;  // m
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    test_support::BundleScene dense = make_local_scene(seed), sparse = dense;
+    BundleOptions options{30, 0};
+    const BundleSummary own = adjust_bundle(dense.problem, options);
+    options.solver = BundleSolver::kSparse;
+    const BundleSummary ceres = adjust_bundle(sparse.problem, options);
+    EXPECT_NEAR(own.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost) << seed;
+    EXPECT_NEAR(own.final_cost, ceres.final_cost, 1e-3 * ceres.final_cost) << seed;
+    EXPECT_NEAR(own.outliers, ceres.outliers, 6) << seed;
+    for (std::size_t i = 0; i < dense.problem.cameras.size(); ++i) {
+      const Eigen::Isometry3d T_own_ceres =
+          dense.problem.cameras[i].T_world_camera.inverse() * sparse.problem.cameras[i].T_world_camera;
+      EXPECT_LT(T_own_ceres.translation().norm(), 3e-4) << "seed " << seed << ", camera " << i;  // m
+    }
   }
 }
 
