@@ -77,7 +77,6 @@ emulate() {
 # rendered scene: sin() and cos() of two C libraries differ in the last bit, and one pixel of a thousand with them.
 lockstep() {
   local began=$SECONDS own="$root/build/release/bin" run=(--detector off --quiet --out)
-  [ -x "$own/rtd-recording" ] || fail "build here first, so that there are poses to compare with: ./deploy/demo.sh"
   "$own/rtd-recording" convert 'synthetic:crowd' "$work/clip.mcap" --frames 40 >/dev/null
   cp "$work/clip.mcap" "$place/root/clip.mcap"
   rm -rf "$place/root/clip"
@@ -94,6 +93,8 @@ lockstep() {
 
 run_tests() {
   local began status=0
+  [ -x "$root/build/release/bin/rtd-recording" ] ||
+    fail "build here first, so that there are poses to compare with: ./deploy/package.sh"
   case " $* " in
     *" -L "*) build ;;
     *)

@@ -103,8 +103,9 @@ async def receive_as_page():
                 await page.send(json.dumps({"op": "options", "dense": True}))
                 async for _ in page:
                     pass
-        except websockets.exceptions.ConnectionClosed:
             return  # the viewer has ended
+        except websockets.exceptions.ConnectionClosed:
+            return
         except OSError:
             await asyncio.sleep(0.1)
 

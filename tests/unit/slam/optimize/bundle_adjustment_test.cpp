@@ -174,12 +174,12 @@ TEST(BundleAdjustment, own_solver_finds_the_minimum_that_ceres_finds) {
     options.solver = BundleSolver::kSparse;
     const BundleSummary ceres = adjust_bundle(sparse.problem, options);
     EXPECT_NEAR(own.initial_cost, ceres.initial_cost, 1e-9 * ceres.initial_cost) << seed;
-    EXPECT_NEAR(own.final_cost, ceres.final_cost, 1e-3 * ceres.final_cost) << seed;
-    EXPECT_NEAR(own.outliers, ceres.outliers, 6) << seed;
+    EXPECT_NEAR(own.final_cost, ceres.final_cost, 5e-4 * ceres.final_cost) << seed;
+    EXPECT_NEAR(own.outliers, ceres.outliers, 3) << seed;
     for (std::size_t i = 0; i < dense.problem.cameras.size(); ++i) {
       const Eigen::Isometry3d T_own_ceres =
           dense.problem.cameras[i].T_world_camera.inverse() * sparse.problem.cameras[i].T_world_camera;
-      EXPECT_LT(T_own_ceres.translation().norm(), 3e-4) << "seed " << seed << ", camera " << i;  // m
+      EXPECT_LT(T_own_ceres.translation().norm(), 2e-4) << "seed " << seed << ", camera " << i;  // m
     }
   }
 }
