@@ -46,7 +46,9 @@ install_system() {
   since "$began" "system installed"
 }
 
+# On itself first: "ip netns exec" wants / to be a mount.
 mount_system() {
+  mount --bind "$1" "$1"
   mount -t proc proc "$1/proc"
   mount -t sysfs -o ro sysfs "$1/sys"
   mkdir -p "$1/dev/shm" "$1/dev/pts"
@@ -55,7 +57,7 @@ mount_system() {
 }
 
 unmount_systems() {
-  umount -R "$work"/*/dev/shm "$work"/*/dev/pts "$work"/*/proc "$work"/*/sys 2>/dev/null || true
+  umount -R "$work"/* 2>/dev/null || true
   rm -rf --one-file-system "$work"
 }
 

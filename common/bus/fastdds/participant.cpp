@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
@@ -95,22 +96,38 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
   return qos;
 }
 
-dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factory, BusOptions options,
-                                           const HostLimits& limits, DiscoveryScope scope,
-                                           dds::DomainParticipantListener* listener) {
-  static std::mutex one_at_a_time;  // Fast DDS asks getpwuid(), which is not thread-safe
-  const std::lock_guard lock(one_at_a_time);
+/// Fast DDS tells the participants of a process apart by their ids, whatever their domains.
+struct ParticipantsOfProcess {
+  std::mutex creating;  // one at a time: Fast DDS asks getpwuid(), which is not thread-safe
+  std::set<std::uint32_t> ids;
+};
+
+ParticipantsOfProcess& participants_of_process() {
+  static ParticipantsOfProcess participants;
+  return participants;
+}
+
+std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::DomainParticipantFactory& factory,
+                                                                     BusOptions options, const HostLimits& limits,
+                                                                     DiscoveryScope scope,
+                                                                     dds::DomainParticipantListener* listener) {
+  ParticipantsOfProcess& own = participants_of_process();
+  const std::lock_guard lock(own.creating);
+  // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
+  // receives nothing there.
+  const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(1));
   const WithoutServerOfEnvironment announced;
   constexpr int kAttempts = 5;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {  // an id may be taken by another connection of this process
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {  // the program that uses us may have participants, too
     const std::uint32_t number = next_number();
-    const auto free_id = free_participant_id(options.domain, number);
+    const auto free_id = free_participant_id(options.domain, number, own.ids);
     if (!free_id && std::exchange(options.shared_memory, false) && options.on_problem) options.on_problem(kNoFreePort);
+    const std::uint32_t id = free_id.value_or(number % participant_ids(options.domain));
     dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
-    qos.wire_protocol().participant_id =
-        static_cast<std::int32_t>(free_id.value_or(number % participant_ids(options.domain)));
+    qos.wire_protocol().participant_id = static_cast<std::int32_t>(id);
     if (auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none())) {
-      return participant;
+      own.ids.insert(id);
+      return {participant, id};
     }
   }
   throw BusError("Fast DDS refused to join domain " + std::to_string(options.domain) + "; " + kMayBeRefused);
@@ -118,12 +135,13 @@ dds::DomainParticipant* create_participant(dds::DomainParticipantFactory& factor
 
 }  // namespace
 
-std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first,
+std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first, const std::set<std::uint32_t>& taken,
                                                  const std::filesystem::path& shm_dir) {
   const rtps::PortParameters ports;
   const std::uint32_t ids = participant_ids(domain);
   for (std::uint32_t step = 0; step < ids; ++step) {
     const std::uint32_t id = (first + step) % ids;
+    if (taken.count(id) > 0) continue;
     const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
     const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
     std::error_code unreadable;
@@ -146,7 +164,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, En
   configure_library_once();
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
-  participant_ = create_participant(*factory_, options, limits, scope, &listener_);
+  std::tie(participant_, participant_id_) = create_participant(*factory_, options, limits, scope, &listener_);
   listener_.start(*participant_, options);
   create_publishers(options.network);
 }
@@ -183,6 +201,9 @@ Participant::~Participant() {
   silence();
   participant_->delete_contained_entities();
   factory_->delete_participant(participant_);
+  ParticipantsOfProcess& own = participants_of_process();
+  const std::lock_guard lock(own.creating);
+  own.ids.erase(participant_id_);
 }
 
 dds::Topic* Participant::topic(const std::string& name, const Codec& codec) {

@@ -11,21 +11,24 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/discovery_listener.hpp"
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/host/shm_folder.hpp"
 #include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::fastdds {
 
 /// Participant ids choose port numbers. A process must not get the shared-memory port of one that was killed: others
 /// keep that port in memory as long as they run, and may write to it in vain, for seconds or for good. So the id
-/// follows the process id, and the next one is taken while there is a port of that number in `shm_dir`, in use or left
-/// behind. Nothing when there is no other: then only UDP is safe.
+/// follows the process id, and the next one is taken while it is one of `taken`, or there is a port of that number in
+/// `shm_dir`, in use or left behind. Nothing when there is no other: then only UDP is safe.
 std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first,
-                                                 const std::filesystem::path& shm_dir = "/dev/shm");
+                                                 const std::set<std::uint32_t>& taken = {},
+                                                 const std::filesystem::path& shm_dir = kShmFolder);
 
 /// Our participant in a domain: transports, publisher, subscriber and topics. Thread-safe.
 class Participant {
@@ -71,6 +74,7 @@ class Participant {
   DiscoveryListener listener_;                              // outlives the participant, which calls it
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive
   dds::DomainParticipant* participant_ = nullptr;
+  std::uint32_t participant_id_ = 0;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
   std::mutex topics_mutex_, readers_mutex_;

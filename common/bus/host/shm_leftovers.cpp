@@ -20,8 +20,9 @@
 #include <memory>
 #include <set>
 #include <string_view>
-#include <thread>
 #include <utility>
+
+#include "common/bus/host/shm_folder.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -172,30 +173,6 @@ std::string shm_group(const std::string& name) {
   return group;
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return number_; }
-
- private:
-  int number_;
-};
-
-/// One cleaner at a time: another one's list would be out of date.
-bool lock_folder(const Descriptor& folder) {
-  constexpr int kAttempts = 50;
-  for (int i = 0; i < kAttempts; ++i) {
-    if (flock(folder.get(), LOCK_EX | LOCK_NB) == 0) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return false;
-}
-
 std::map<std::string, Group> list_groups(const Descriptor& folder, const std::string& path) {
   std::map<std::string, Group> groups;
   for (const std::string& name : list_folder(path)) {
@@ -279,8 +256,9 @@ std::uint64_t CleanReport::removed_bytes() const {
 
 CleanReport remove_shm_leftovers(const CleanOptions& options) {
   CleanReport report;
-  const Descriptor folder(open(options.shm_dir.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder.get() < 0 || !lock_folder(folder)) return report;
+  const ShmFolder locked(options.shm_dir, std::chrono::milliseconds(100));
+  if (!locked.locked()) return report;  // another one's list would be out of date
+  const Descriptor& folder = locked.descriptor();
   const auto groups = list_groups(folder, options.shm_dir);
   if (groups.empty()) return report;
   const bool blind = in_first_ipc_namespace(options.proc_dir) && !in_first_pid_namespace(options.proc_dir);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "common/camera/synthetic/same_math.hpp"
 #include "common/camera/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
@@ -53,14 +54,14 @@ struct Figure::Placing {
     const Vector3f center_m = part.center_m.cwiseProduct(wide), semi_axes_m = part.semi_axes_m.cwiseProduct(wide);
     const Vector3f joint(center_m.x(), center_m.y(), part.joint_height_m);
     Eigen::Isometry3f T_person_body = Eigen::Isometry3f::Identity();
-    T_person_body.linear() = Eigen::AngleAxisf(part.turned_rad, Vector3f::UnitY()).toRotationMatrix();
+    T_person_body.linear() = rotation(part.turned_rad, Vector3f::UnitY());
     T_person_body.translation() = scale * (joint + T_person_body.linear() * (center_m - joint));
     geometry.ellipsoids.push_back(
         {T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object, part.material});
   }
   /// Hangs an ellipsoid below a joint at `from_m`, turned about it; the other end.
   Vector3f hang(const Vector3f& from_m, const Bone& bone, int texture, bool moving) {
-    const Vector3f along(-std::sin(bone.turned_rad), 0, -std::cos(bone.turned_rad));
+    const Vector3f along(-sine(bone.turned_rad), 0, -cosine(bone.turned_rad));
     const Vector3f center_m = from_m + bone.length_m / 2 * along;
     const Vector3f semi_axes_m(bone.radius_m, bone.radius_m / breadth,
                                bone.length_m / 2 + bone.radius_m * kJointOverlap);
@@ -102,7 +103,7 @@ void Figure::append_to(Geometry& geometry, const Posture& posture) const {
   const Eigen::Isometry3f T_world_person =
       upright({posture.position_m.x(), posture.position_m.y(), posture.raised_m}, posture.heading_rad);
   const float thigh_rad = kSeatedThighRad * posture.seated;
-  const Vector3f hip_shift_m(-kThighM * std::sin(thigh_rad), 0, kThighM * (std::cos(thigh_rad) - 1));
+  const Vector3f hip_shift_m(-kThighM * sine(thigh_rad), 0, kThighM * (cosine(thigh_rad) - 1));
   Placing placing{geometry,           T_world_person,    height_scale_,
                   breadth_,           hip_shift_m,       geometry.add_object("person"),
                   posture.body_moves, posture.limbs_move};

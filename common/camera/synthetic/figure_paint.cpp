@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/camera/synthetic/geometry.hpp"
+#include "common/camera/synthetic/same_math.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {
@@ -45,13 +46,13 @@ bool in_ellipse(float x, float y, float half_width, float half_height) {
 
 /// Ambient light: less from below and beside, where arms and legs shade it.
 ColorBgr shaded(const ColorBgr& color, float around, float height) {
-  const float beside = std::abs(std::sin(kPiF * around));
+  const float beside = std::abs(sine(kPiF * around));
   return lit(color, (0.92F + 0.10F * height) * (1 - 0.18F * beside * beside));
 }
 
 ColorBgr face(const ColorBgr& skin, const ColorBgr& hair, float around, float height) {
   const float ring = std::sqrt(std::max(0.0F, 1 - height * height)), beside = std::abs(around);
-  if (is_hair({ring * std::cos(kPiF * around), ring * std::sin(kPiF * around), height})) return hair;
+  if (is_hair({ring * cosine(kPiF * around), ring * sine(kPiF * around), height})) return hair;
   if (in_ellipse(beside - 0.13F, height - 0.02F, 0.022F, 0.06F)) return kBlack;  // iris
   if (in_ellipse(beside - 0.13F, height - 0.02F, 0.055F, 0.06F)) return kWhite;
   if (in_ellipse(beside - 0.13F, height - 0.02F, 0.085F, 0.12F)) return lit(skin, 0.78F);              // socket

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/synthetic/geometry.hpp"
 
+#include "common/camera/synthetic/same_math.hpp"
+
 namespace rtd::camera::synthetic {
 
 int Geometry::add_object(std::string class_name) {
@@ -12,7 +14,7 @@ int Geometry::add_object(std::string class_name) {
 Eigen::Isometry3f upright(const Eigen::Vector3f& position_m, float turned_rad) {
   Eigen::Isometry3f T_world_body = Eigen::Isometry3f::Identity();
   T_world_body.translation() = position_m;
-  T_world_body.linear() = Eigen::AngleAxisf(turned_rad, Eigen::Vector3f::UnitZ()).toRotationMatrix();
+  T_world_body.linear() = rotation(turned_rad, Eigen::Vector3f::UnitZ());
   return T_world_body;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/camera/synthetic/same_math.hpp"
+
 namespace rtd::camera::synthetic {
 namespace {
 
@@ -24,10 +26,6 @@ constexpr float kTravelM = 1.0F;  ///< of a slow box
 float progress(double t_s, double begin_s, double end_s) {
   const double x = std::clamp((t_s - begin_s) / (end_s - begin_s), 0.0, 1.0);
   return static_cast<float>(x * x * (3 - 2 * x));
-}
-
-float sine(double x) {
-  return static_cast<float>(std::sin(x));
 }
 
 Vector2f level(const Eigen::Vector3d& v) {
@@ -57,8 +55,8 @@ FloorPath::FloorPath(std::uint64_t seed, const WalkArea& area, float speed_m_s) 
 }
 
 Eigen::Vector2f FloorPath::position_m(double t_s) const {
-  return {area_.reach_x_m * static_cast<float>(std::sin(rate_x_ * t_s + phase_x_)),
-          area_.center_y_m + area_.reach_y_m * static_cast<float>(std::sin(rate_y_ * t_s + phase_y_))};
+  return {area_.reach_x_m * sine(rate_x_ * t_s + phase_x_),
+          area_.center_y_m + area_.reach_y_m * sine(rate_y_ * t_s + phase_y_)};
 }
 
 float FloorPath::heading_rad(double t_s) const {
@@ -73,7 +71,7 @@ void Walker::append_to(Geometry& geometry, double t_s) const {
   Posture posture;
   posture.position_m = path_.position_m(t_s);
   posture.heading_rad = path_.heading_rad(t_s);
-  posture.swing = static_cast<float>(std::sin(figure_.step_rate_rad_s() * t_s));
+  posture.swing = sine(figure_.step_rate_rad_s() * t_s);
   figure_.append_to(geometry, posture);
 }
 
@@ -101,7 +99,7 @@ CarriedBox::CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Tex
 
 void CarriedBox::append_to(Geometry& geometry, double t_s) const {
   const Eigen::Vector2f position_m = path_.position_m(t_s);
-  const float bob_m = 0.12F * static_cast<float>(std::sin(2.1 * t_s + phase_rad_));
+  const float bob_m = 0.12F * sine(2.1 * t_s + phase_rad_);
   box_.append_to(geometry, {position_m.x(), position_m.y(), height_m_ + bob_m},
                  static_cast<float>(turn_rate_rad_s_ * t_s) + phase_rad_);
 }
@@ -127,8 +125,8 @@ Posture Sitter::posture_at(double t_s) const {
   const float turned_rad = turned_end_rad_ * progress(t_s, walk_s, stop_s);
   const bool walks = t_s >= walk_s && t_s < stop_s;
   Posture posture;
-  posture.position_m = feet_m_ + Vector2f(reach_x_m_ * std::sin(turned_rad), reach_y_m_ * (std::cos(turned_rad) - 1));
-  const float along_rad = std::atan2(-reach_y_m_ * std::sin(turned_rad), reach_x_m_ * std::cos(turned_rad));
+  posture.position_m = feet_m_ + Vector2f(reach_x_m_ * sine(turned_rad), reach_y_m_ * (cosine(turned_rad) - 1));
+  const float along_rad = angle_rad(-reach_y_m_ * sine(turned_rad), reach_x_m_ * cosine(turned_rad));
   const float turn_rad = std::remainder(along_rad - heading_rad_, kTwoPiF);
   posture.heading_rad = heading_rad_ + turn_rad * progress(t_s, walk_s - 0.5, walk_s + 0.5);
   posture.seated = 1 - progress(t_s, habits_.sit_s, walk_s);
@@ -142,7 +140,7 @@ Posture Sitter::posture_at(double t_s) const {
 }
 
 void Sitter::append_chair(Geometry& geometry) const {
-  const Vector2f back = -Vector2f(std::cos(heading_rad_), std::sin(heading_rad_));
+  const Vector2f back = -Vector2f(cosine(heading_rad_), sine(heading_rad_));
   const int object = geometry.add_object("chair");
   const auto add = [&](float behind_feet_m, float height_m, const Vector3f& size_m) {
     const Vector2f at = feet_m_ + behind_feet_m * back;
@@ -179,7 +177,7 @@ void Blocker::append_to(Geometry& geometry, double t_s) const {
                        ((1 - near) * 0.5F * sine(0.9 * t_s) + 0.02F * sine(1.7 * t_s)) * to_the_side;
   const Eigen::Vector3d gaze_m = T_world_camera * Eigen::Vector3d(0, 0, static_cast<double>(nearest_m_));
   posture.raised_m = near * std::clamp(static_cast<float>(gaze_m.z()) - kChestHeightM, -0.3F, 0.4F);
-  posture.heading_rad = std::atan2(-forward.y(), -forward.x()) + 0.12F * sine(0.8 * t_s);
+  posture.heading_rad = angle_rad(-forward.y(), -forward.x()) + 0.12F * sine(0.8 * t_s);
   posture.swing = (0.05F + 0.95F * walks) * sway;
   figure_.append_to(geometry, posture);
 }

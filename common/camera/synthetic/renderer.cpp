@@ -6,6 +6,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "common/camera/synthetic/same_math.hpp"
+
 namespace rtd::camera::synthetic {
 namespace {
 
@@ -37,7 +39,7 @@ float unit_sphere_depth(const Eigen::Vector3f& center, const Eigen::Vector3f& ra
 
 /// Where a texture that wraps is seen at a point of the unit sphere, 0..1 from its left.
 float around(const Eigen::Vector3f& on_sphere) {
-  return 0.5F + std::atan2(on_sphere.y(), on_sphere.x()) / kTwoPiF;
+  return 0.5F + angle_rad(on_sphere.y(), on_sphere.x()) / kTwoPiF;
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/camera/synthetic/same_math.hpp"
+
 namespace rtd::camera::synthetic {
 namespace {
 
@@ -93,15 +95,15 @@ ColorBgr random_color(const TextureStyle& style, SeededRandom& random) {
 
 Patch random_patch(const Canvas& canvas, const TextureStyle& style, SeededRandom& random) {
   const float scale = style.max_patch_m / style.min_patch_m;
-  const auto size_texels = [&] { return style.min_patch_m * std::pow(scale, random.unit()) * canvas.texels_per_m; };
-  const float angle_rad = random.unit() < 0.7F ? 0.0F : random.between(-0.6F, 0.6F);
+  const auto size_texels = [&] { return style.min_patch_m * power(scale, random.unit()) * canvas.texels_per_m; };
+  const float turned_rad = random.unit() < 0.7F ? 0.0F : random.between(-0.6F, 0.6F);
   Patch patch{};
   patch.center_x = random.unit() * static_cast<float>(canvas.width);
   patch.center_y = random.unit() * static_cast<float>(canvas.height);
   patch.half_width = size_texels() / 2;
   patch.half_height = size_texels() / 2;
-  patch.cos_angle = std::cos(angle_rad);
-  patch.sin_angle = std::sin(angle_rad);
+  patch.cos_angle = cosine(turned_rad);
+  patch.sin_angle = sine(turned_rad);
   patch.cell = std::max(2.0F, random.between(0.015F, 0.05F) * canvas.texels_per_m);
   patch.fill = static_cast<Fill>(random.index(5));
   patch.ink = random_color(style, random);

@@ -33,6 +33,19 @@ std::string TwoHosts::unavailable() {
 }
 
 TwoHosts::TwoHosts(int loss_percent) {
+  try {
+    make(loss_percent);
+  } catch (...) {
+    remove();
+    throw;
+  }
+}
+
+TwoHosts::~TwoHosts() {
+  remove();
+}
+
+void TwoHosts::make(int loss_percent) {
   for (const char host : {'a', 'b'}) {
     launcher::RtdCommand& holder = host == 'a' ? holder_a_ : holder_b_;
     run("ip netns add " + name(host));
@@ -48,7 +61,7 @@ TwoHosts::TwoHosts(int loss_percent) {
   for (const char host : {'a', 'b'}) shape(host, loss_percent);
 }
 
-TwoHosts::~TwoHosts() {
+void TwoHosts::remove() {
   for (const std::string& pid : {pid_a_, pid_b_})
     if (!pid.empty()) ::kill(std::stoi(pid), SIGKILL);
   for (const char host : {'a', 'b'}) testing::run_command("ip netns del " + name(host));
@@ -72,7 +85,7 @@ void TwoHosts::shape(char host, int loss_percent) const {
 
 std::vector<std::string> TwoHosts::on(char host, std::vector<std::string> command) const {
   const std::string& pid = host == 'a' ? pid_a_ : pid_b_;
-  std::vector<std::string> words = {"-t", pid, "-n", "-m"};
+  std::vector<std::string> words = {"-t", pid, "-n", "-m", "-r", "-w"};
   words.insert(words.end(), command.begin(), command.end());
   return words;
 }

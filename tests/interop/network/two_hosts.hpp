@@ -33,6 +33,8 @@ class TwoHosts {
   std::uint64_t sent_by_a(const std::string& interface) const;
 
  private:
+  void make(int loss_percent);
+  void remove();
   std::string name(char host) const;
   void shape(char host, int loss_percent) const;
 

@@ -39,24 +39,29 @@ class ParticipantId : public testing::Test {
 };
 
 TEST_F(ParticipantId, follows_the_process_id) {
-  EXPECT_EQ(free_participant_id(kDomain, 0, folder_), 0U);
-  EXPECT_EQ(free_participant_id(kDomain, 118, folder_), 118U);
-  EXPECT_EQ(free_participant_id(kDomain, 4328, folder_), 44U);
-  EXPECT_EQ(free_participant_id(232, 4304, folder_), 44U) << "of sixty, its ports end at 65535";
+  EXPECT_EQ(free_participant_id(kDomain, 0, {}, folder_), 0U);
+  EXPECT_EQ(free_participant_id(kDomain, 118, {}, folder_), 118U);
+  EXPECT_EQ(free_participant_id(kDomain, 4328, {}, folder_), 44U);
+  EXPECT_EQ(free_participant_id(232, 4304, {}, folder_), 44U) << "of sixty, its ports end at 65535";
 }
 
 TEST_F(ParticipantId, is_not_that_of_a_port_which_is_there) {
   add_port(44);
   add_port(45);
-  EXPECT_EQ(free_participant_id(kDomain, 4328, folder_), 46U);
-  EXPECT_EQ(free_participant_id(kDomain + 1, 4328, folder_), 44U) << "another domain has other ports";
+  EXPECT_EQ(free_participant_id(kDomain, 4328, {}, folder_), 46U);
+  EXPECT_EQ(free_participant_id(kDomain + 1, 4328, {}, folder_), 44U) << "another domain has other ports";
   add_port(118);
-  EXPECT_EQ(free_participant_id(kDomain, 118, folder_), 0U);
+  EXPECT_EQ(free_participant_id(kDomain, 118, {}, folder_), 0U);
+}
+
+TEST_F(ParticipantId, is_not_that_of_another_participant_of_this_process) {
+  EXPECT_EQ(free_participant_id(kDomain, 4328, {44, 46}, folder_), 45U);
+  EXPECT_EQ(free_participant_id(kDomain, 46, {44, 46}, folder_), 47U);
 }
 
 TEST_F(ParticipantId, is_none_when_all_ports_are_there) {
   for (std::uint32_t id = 0; id < 119; ++id) add_port(id);
-  EXPECT_EQ(free_participant_id(kDomain, 61, folder_), std::nullopt);
+  EXPECT_EQ(free_participant_id(kDomain, 61, {}, folder_), std::nullopt);
 }
 
 /// The names above are those that Fast DDS gives its files.
@@ -70,6 +75,19 @@ TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) 
     EXPECT_NE(free_participant_id(kDomain, first), before);
   }
   EXPECT_EQ(free_participant_id(kDomain, first), before);
+}
+
+TEST(ParticipantOnTheBus, does_not_choose_its_port_while_another_process_does) {
+  using std::chrono::milliseconds;
+  BusOptions options;
+  options.domain = kDomain;
+  auto other = std::make_unique<ShmFolder>(kShmFolder, std::chrono::seconds(10));
+  ASSERT_TRUE(other->locked());
+  const auto joined =
+      std::async(std::launch::async, [&] { const Participant participant(options, read_host_limits()); });
+  EXPECT_EQ(joined.wait_for(milliseconds(300)), std::future_status::timeout);
+  other.reset();
+  joined.wait();
 }
 
 /// With Fast DDS' direct calls between participants of one process both wait forever within a fraction of a second.
