@@ -96,7 +96,7 @@ dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostL
   return qos;
 }
 
-/// Fast DDS tells the participants of a process apart by their ids, whatever their domains.
+/// Fast DDS distinguishes the participants of a process by their ids, whatever their domains.
 struct ParticipantsOfProcess {
   std::mutex creating;  // one at a time: Fast DDS asks getpwuid(), which is not thread-safe
   std::set<std::uint32_t> ids;
