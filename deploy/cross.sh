@@ -74,7 +74,7 @@ emulate() {
 }
 
 # The same recording here, where the product is built here, and under qemu: the same poses within a micrometre. Not a
-# rendered scene: sin() and cos() of two C libraries differ in the last bit, and one pixel of a thousand with them.
+# rendered scene: sin() and cos() of two C libraries may differ in the last bit, and one pixel of a thousand with them.
 lockstep() {
   local began=$SECONDS own="$root/build/release/bin" run=(--detector off --quiet --out)
   "$own/rtd-recording" convert 'synthetic:crowd' "$work/clip.mcap" --frames 40 >/dev/null

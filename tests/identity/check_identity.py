@@ -106,7 +106,7 @@ def measure(rtd: str, wanted) -> dict:
             out = pathlib.Path(folder) / "base"
             out.mkdir()
             found["odometry base"] = base_odometry(rtd, data, out)
-        for name, source, options in (("mcap synthetic", "synthetic:office", ["--frames", "3"]),
+        for name, source, options in (("mcap synthetic", "synthetic:office", ["--frames", "3", "--compress", "none"]),
                                       ("mcap fr1_desk_9", f"tum:{data / 'fr1_desk_9'}", ["--compress", "none"])):
             if not wanted(name):
                 continue

@@ -104,7 +104,7 @@ def collect(texts: Texts, with_help: bool) -> dict:
     for service in SERVICES:
         found[f"config rtd-{service}"] = texts.output(f"rtd-{service}", "--print-config")
     recording = str(texts.scratch / "recording.mcap")
-    texts.output("rtd", "convert", "synthetic:office", recording, "--frames", "3")
+    texts.output("rtd", "convert", "synthetic:office", recording, "--frames", "3", "--compress", "none")
     found["info json"] = texts.output("rtd", "info", "--json", recording)
     found["run json keys"], found["metrics"] = texts.run()
     return found

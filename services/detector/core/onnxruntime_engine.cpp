@@ -21,14 +21,20 @@ std::unique_ptr<Engine> make_onnxruntime_engine(const EngineModel&, const std::s
 #else
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <onnxruntime_c_api.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <charconv>
+#include <iostream>
 #include <map>
 #include <mutex>
 #include <opencv2/core.hpp>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -113,6 +119,45 @@ void use_gpu(const OrtApi& api, OrtSessionOptions* session, int gpu) {
   require(api, api.SessionOptionsAppendExecutionProvider_CUDA_V2(session, made), task);
 }
 
+/// Debian's ONNX Runtime has the operators in a library of their own, which registers them once more with the first
+/// session and writes a line to stderr for each: a thousand. These are left out; what else is written meanwhile comes
+/// when the session is open.
+class WithoutSchemaErrors {
+ public:
+  WithoutSchemaErrors() {
+    static std::atomic<bool> first{true};
+    void* const operators = dlopen("libonnx.so.1", RTLD_LAZY | RTLD_NOLOAD);
+    if (operators == nullptr) return;
+    dlclose(operators);
+    if (!first.exchange(false)) return;
+    stderr_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+    written_ = memfd_create("rtd-stderr", MFD_CLOEXEC);
+    if (stderr_ >= 0 && written_ >= 0) dup2(written_, STDERR_FILENO);
+  }
+  ~WithoutSchemaErrors() {
+    if (stderr_ >= 0) dup2(stderr_, STDERR_FILENO);
+    if (stderr_ >= 0 && written_ >= 0) pass_on();
+    for (const int fd : {stderr_, written_})
+      if (fd >= 0) close(fd);
+  }
+  WithoutSchemaErrors(const WithoutSchemaErrors&) = delete;
+  WithoutSchemaErrors& operator=(const WithoutSchemaErrors&) = delete;
+
+ private:
+  void pass_on() const {
+    std::string text;
+    std::array<char, 4096> part{};
+    lseek(written_, 0, SEEK_SET);
+    for (ssize_t n = 0; (n = read(written_, part.data(), part.size())) > 0;)
+      text.append(part.data(), static_cast<std::size_t>(n));
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+      if (!line.empty() && !line.starts_with("Schema error: Trying to register")) std::cerr << line << '\n';
+  }
+
+  int stderr_ = -1, written_ = -1;
+};
+
 Owned<OrtSession> open_session(const Library& library, const EngineModel& model, int gpu) {
   const OrtApi& api = *library.api;
   const std::string task = "configure itself";
@@ -126,6 +171,7 @@ Owned<OrtSession> open_session(const Library& library, const EngineModel& model,
   require(api, api.AddSessionConfigEntry(made, "session.intra_op.allow_spinning", "0"), task);
   if (gpu >= 0) use_gpu(api, made, gpu);
   OrtSession* session = nullptr;
+  const WithoutSchemaErrors quiet;
   require(api, api.CreateSessionFromArray(library.environment, model.onnx.data(), model.onnx.size(), made, &session),
           "load this network");
   return {session, api.ReleaseSession};

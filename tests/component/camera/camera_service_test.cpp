@@ -294,7 +294,7 @@ TEST_F(CameraServiceTest, does_not_encode_jpeg_without_readers) {
 TEST_F(CameraServiceTest, encodes_every_jpeg_when_nothing_may_be_dropped) {
   std::atomic<int> received{0};
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
-  constexpr int kImages = 20;
+  const int kImages = bus::qos_settings(bus::topics::kColorJpeg.profile).depth;  // the reader holds them all
   {
     JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kBlock);
     for (int i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar(i, i, i)), i);

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/core/ocl.hpp>
 #include <regex>
 #include <set>
 #include <span>
@@ -18,6 +17,7 @@
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/engine_guard.hpp"
 #include "services/detector/core/network.hpp"
+#include "tests/support/detector/opencl_here.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {
@@ -35,19 +35,9 @@ std::string full_name(const std::string& engine) {
   return engine == "onnxruntime" ? engine + ":" ONNXRUNTIME_LIBRARY : engine;
 }
 
-/// PoCL compiles for the CPU: version 3 (Debian 12) in seconds, 6 (Debian 13) not within five minutes.
-bool has_slow_compiler() {
-  std::vector<cv::ocl::PlatformInfo> platforms;
-  cv::ocl::getPlatfomsInfo(platforms);
-  return std::ranges::any_of(platforms, [](const auto& platform) {
-    return std::regex_search(platform.version(), std::regex("PoCL ([4-9]|[1-9][0-9])\\."));
-  });
-}
-
 /// Why an engine cannot be tested here; empty when it can.
 std::string absent(const std::string& engine) {
-  if (engine == "opencl" && opencl_devices().empty()) return "needs an OpenCL device: apt-get install pocl-opencl-icd";
-  if (engine == "opencl" && has_slow_compiler()) return "this version of PoCL compiles for many minutes";
+  if (engine == "opencl") return test::opencl_unavailable();
   if (engine == "onnxruntime" && (!knows_onnxruntime() || !std::filesystem::exists(ONNXRUNTIME_LIBRARY)))
     return "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
   return {};

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "services/detector/core/engine.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/detector/opencl_here.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/fleet/robot_double.hpp"
 #include "tests/support/test_domain.hpp"
@@ -104,7 +104,7 @@ TEST_F(FleetProcess, continues_on_the_cpu_without_its_engine_and_says_so) {
 }
 
 TEST_F(FleetProcess, verifies_its_engine_with_the_first_images) {
-  if (opencl_devices().empty()) GTEST_SKIP() << "needs an OpenCL device: apt-get install pocl-opencl-icd";
+  if (const std::string why = test::opencl_unavailable(); !why.empty()) GTEST_SKIP() << why;
   const auto anna = robot("anna", 1), ben = robot("ben", 2);
   RtdCommand detector;
   detector.start(arguments({"--engine", "opencl", "--verify-engine"}));

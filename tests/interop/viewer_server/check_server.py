@@ -8,6 +8,7 @@ many, or never finish their request. Exit code 77 = skipped: python3-websockets 
 """
 import base64
 import http.client
+import importlib.metadata
 import json
 import os
 import re
@@ -25,6 +26,7 @@ try:
     import asyncio
 
     import websockets
+    import websockets.exceptions
 except ImportError:
     print("SKIPPED: python3-websockets is not installed; deploy/setup.sh installs it")
     sys.exit(77)
@@ -32,6 +34,14 @@ except ImportError:
 RTD = sys.argv.pop(1)
 DOMAIN = os.environ.get("RTD_TEST_DOMAIN", "91")
 FOXGLOVE, PAGE = "foxglove.sdk.v1", "rtd.viewer.v1"
+# Version 14 of websockets has other names.
+RENAMED = int(importlib.metadata.version("websockets").split(".")[0]) >= 14
+HEADERS = "additional_headers" if RENAMED else "extra_headers"
+Refused = websockets.exceptions.InvalidStatus if RENAMED else websockets.exceptions.InvalidStatusCode
+
+
+def status_of(refused):
+    return refused.response.status_code if RENAMED else refused.status_code
 
 
 class Process:
@@ -223,9 +233,9 @@ class ViewerTest(unittest.TestCase):
                 self.assertEqual(client.subprotocol, both[0])
             for more, status in (({"subprotocols": ["other"]}, 400),
                                  ({"subprotocols": [FOXGLOVE], "origin": "https://evil.example"}, 403)):
-                with self.assertRaises(websockets.exceptions.InvalidStatusCode) as refused:
+                with self.assertRaises(Refused) as refused:
                     await websockets.connect(f"ws://127.0.0.1:{self.viewer.port}", **more)
-                self.assertEqual(refused.exception.status_code, status)
+                self.assertEqual(status_of(refused.exception), status)
 
         asyncio.run(check())
 
@@ -258,12 +268,12 @@ class ViewerTest(unittest.TestCase):
         async def check():
             async with viewer.connect(PAGE, f"/live?token={token}"):
                 pass
-            async with viewer.connect(FOXGLOVE, extra_headers={"Authorization": f"Bearer {token}"}):
+            async with viewer.connect(FOXGLOVE, **{HEADERS: {"Authorization": f"Bearer {token}"}}):
                 pass
             for path in ("/live", "/live?token=wrong"):
-                with self.assertRaises(websockets.exceptions.InvalidStatusCode) as refused:
+                with self.assertRaises(Refused) as refused:
                     await viewer.connect(PAGE, path)
-                self.assertEqual(refused.exception.status_code, 401)
+                self.assertEqual(status_of(refused.exception), 401)
 
         asyncio.run(check())
         self.assertEqual(viewer.get("/access?token=wrong")[0], 401)
