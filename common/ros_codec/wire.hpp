@@ -82,7 +82,7 @@ class WireReader {
       read(number);
       value = number;
     } else {
-      for_each_part<kFormat>(value, [this](auto& part) { read(part); });
+      for_each_part<kFormat>(value, [this](auto& part) { this->read(part); });
     }
   }
 
@@ -219,7 +219,7 @@ class WireWriter {
     } else if constexpr (UnalignedNumber<T>) {
       write(value.value());
     } else {
-      for_each_part<kFormat>(value, [this](const auto& part) { write(part); });
+      for_each_part<kFormat>(value, [this](const auto& part) { this->write(part); });
     }
   }
 

@@ -149,7 +149,7 @@ ConfigBinder::Bound ConfigBinder::add(std::string_view key, T& value, std::strin
     }
   };
   constexpr bool kList = std::is_same_v<T, std::vector<std::string>>;
-  const auto take = [assign, read](const std::vector<std::string>& words) {
+  const auto take = [=](const std::vector<std::string>& words) {
     if constexpr (kList) {
       return assign(words);
     } else if constexpr (std::is_same_v<T, std::string>) {

@@ -23,7 +23,7 @@ struct LargestSample {
   template <class T>
   void add() {
     if constexpr (msg::Message<T>) {
-      msg::for_each_field_type<T>([this]<class Field>(const char*) { add<Field>(); });
+      msg::for_each_field_type<T>([this]<class Field>(const char*) { this->template add<Field>(); });
     } else if constexpr (std::is_class_v<T>) {
       add_many(msg::TypeOf<T>());
     } else {

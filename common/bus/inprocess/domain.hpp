@@ -63,13 +63,17 @@ struct WriterEndpoint {
 struct ReaderEndpoint {
   ReaderEndpoint(EndpointKind what, StatusCallbacks callbacks, std::function<void(Message)> on_message)
       : kind(std::move(what)),
-        status(std::move(callbacks), mailbox.thread()),
-        mailbox(kind.qos.depth, std::move(on_message)) {}
+        mailbox(kind.qos.depth, std::move(on_message)),
+        status(std::move(callbacks), mailbox.thread()) {}
+  ~ReaderEndpoint() { mailbox.thread().stop(); }  // it uses the others
+  ReaderEndpoint(const ReaderEndpoint&) = delete;
+  ReaderEndpoint& operator=(const ReaderEndpoint&) = delete;
+
   EndpointKind kind;
+  WriterId id{};  ///< given by the domain
+  int lost = 0;   ///< messages pushed out of the full mailbox, guarded by the domain
+  Mailbox mailbox;
   StatusReporter status;
-  WriterId id{};    ///< given by the domain
-  int lost = 0;     ///< messages pushed out of the full mailbox, guarded by the domain
-  Mailbox mailbox;  // last: its thread uses the others and ends first
 };
 
 /// All endpoints of one domain number in this process. Thread-safe; never runs a callback under its lock.

@@ -183,7 +183,7 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
                                                 const Eigen::Isometry3d& T_current_last, double elapsed_s) const {
   constexpr double kOwnDepthM = 0.1, kFastMS = 3, kMaxOwnDepthM = 0.4;
   const auto own_depth_m = static_cast<float>(std::min(kMaxOwnDepthM, kOwnDepthM + kFastMS * elapsed_s));
-  constexpr float kMinDepthM = 0.1F;
+  constexpr float kNearestM = 0.1F;
   const Eigen::Matrix3f rotation = T_current_last.linear().cast<float>();
   const Eigen::Vector3f translation = T_current_last.translation().cast<float>();
   const auto& p = camera.parameters();
@@ -193,7 +193,7 @@ std::vector<std::uint8_t> DynamicMemory::recall(const DepthGrid& grid, const geo
   std::vector<std::uint8_t> hold_cs(static_cast<std::size_t>(grid.shape.size()), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3f p_current = rotation * point.p_camera + translation;
-    if (p_current.z() < kMinDepthM) continue;
+    if (p_current.z() < kNearestM) continue;
     // Two by two cells: no holes when things come nearer.
     const auto left = static_cast<int>(std::floor((fx * p_current.x() / p_current.z() + cx) / cell_px - 0.5F));
     const auto top = static_cast<int>(std::floor((fy * p_current.y() / p_current.z() + cy) / cell_px - 0.5F));

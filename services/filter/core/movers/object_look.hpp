@@ -21,8 +21,8 @@ struct ObjectLook {
   TintShares tints = TintShares::Zero();
   bool cut_left = false, cut_right = false;
   bool covers(const Eigen::Vector3d& p) const {
-    constexpr double kMarginM = 0.1;
-    return extent.exteriorDistance(p) < kMarginM;
+    constexpr double kBesideM = 0.1;
+    return extent.exteriorDistance(p) < kBesideM;
   }
 };
 

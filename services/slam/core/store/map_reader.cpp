@@ -292,7 +292,8 @@ class MapReader {
   /// `count` records in as many blocks as they take.
   template <class ReadRecord>
   void read_records(BlockTag tag, std::uint32_t count, ReadRecord read_record) {
-    for (std::uint32_t done = 0; done < count;) {
+    std::uint32_t done = 0;
+    while (done < count) {
       expect(tag);
       FieldReader fields(block_.payload);
       located([&] {

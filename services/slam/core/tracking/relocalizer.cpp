@@ -25,9 +25,9 @@ void Relocalizer::settle(LocalMapPtr map) {
 }
 
 LocalMapPtr Relocalizer::choose_map(const LocalMapPtr& snapshot, KeyframeId reference) {
-  constexpr int kMaxFrames = 30;  // the awaited keyframe may have been removed
+  constexpr int kMaxFramesAtPlace = 30;  // the awaited keyframe may have been removed
   if (place_ == nullptr) return snapshot;
-  if (snapshot->find_keyframe(reference) == nullptr && ++frames_at_place_ <= kMaxFrames) return place_;
+  if (snapshot->find_keyframe(reference) == nullptr && ++frames_at_place_ <= kMaxFramesAtPlace) return place_;
   place_.reset();
   return snapshot;
 }
