@@ -379,7 +379,7 @@ TEST_F(CameraServiceTest, waits_for_the_launcher_to_subscribe_to_frames) {
   config_.source = std::string(kTinyScene) + "3";
   FakeTracker tracker(*bus_);
   auto running = start(service::Pace::kLockstep);
-  wait_until([this] { return last_status().message.find("readers") != std::string::npos; });
+  wait_until([this] { return last_status().message.find("waits for 1 of 2") != std::string::npos; });
   EXPECT_THAT(last_status().message, HasSubstr("waits for 1 of 2 frame readers"));
   EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
   const bus::FrameReader launcher(*bus_, [](const auto&) {});

@@ -4,10 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <sstream>
+#include <thread>
 
 #include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/msg/imu.hpp"
@@ -123,6 +125,8 @@ TEST_F(MotionFeedTest, the_map_of_a_robot_on_a_slope_has_z_up_by_gravity) {
 
 TEST_F(MotionFeedTest, counts_what_it_cannot_use) {
   start(service::Pace::kLockstep);
+  for (int i = 0; i < 1000 && driver_->matched() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  ASSERT_GT(driver_->matched(), 0) << "what is sent before is lost to the service";
   step(0, false);
   msg::Imu broken = reading(next_);
   broken.angular_velocity.x = std::numeric_limits<double>::quiet_NaN();
