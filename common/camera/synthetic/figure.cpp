@@ -55,9 +55,9 @@ struct Figure::Placing {
     const Vector3f joint(center_m.x(), center_m.y(), part.joint_height_m);
     Eigen::Isometry3f T_person_body = Eigen::Isometry3f::Identity();
     T_person_body.linear() = rotation(part.turned_rad, Vector3f::UnitY());
-    T_person_body.translation() = scale * (joint + T_person_body.linear() * (center_m - joint));
+    T_person_body.translation() = scale * (joint + times(T_person_body.linear(), center_m - joint));
     geometry.ellipsoids.push_back(
-        {T_world_person * T_person_body, scale * semi_axes_m, texture, moving, object, part.material});
+        {composed(T_world_person, T_person_body), scale * semi_axes_m, texture, moving, object, part.material});
   }
   /// Hangs an ellipsoid below a joint at `from_m`, turned about it; the other end.
   Vector3f hang(const Vector3f& from_m, const Bone& bone, int texture, bool moving) {

@@ -22,12 +22,12 @@ std::array<Face, 6> outer_faces(const Cuboid& cuboid) {
   using Eigen::Vector3f;
   const Vector3f center(0, 0, cuboid.size_m.z() / 2);
   const auto face = [&](const Vector3f& normal, const Vector3f& s, const Vector3f& t) {
-    const auto extent = [&](const Vector3f& axis) { return axis.cwiseAbs().dot(cuboid.size_m); };
+    const auto extent = [&](const Vector3f& axis) { return dot(axis.cwiseAbs(), cuboid.size_m); };
     const Vector3f corner = center + (normal * extent(normal) - s * extent(s) - t * extent(t)) / 2;
     const Eigen::Matrix3f& R_world_cuboid = cuboid.T_world_cuboid.linear();
-    return Face{cuboid.T_world_cuboid * corner,
-                R_world_cuboid * s,
-                R_world_cuboid * t,
+    return Face{transformed(cuboid.T_world_cuboid, corner),
+                times(R_world_cuboid, s),
+                times(R_world_cuboid, t),
                 extent(s),
                 extent(t),
                 cuboid.texture,

@@ -31,7 +31,7 @@ void write_bgr(std::uint8_t* pixel, std::uint32_t texel) {
 
 /// Smallest root z of |center + z * ray|^2 = 1; 0 when the ray misses or the root lies behind.
 float unit_sphere_depth(const Eigen::Vector3f& center, const Eigen::Vector3f& ray) {
-  const float a = ray.squaredNorm(), b = center.dot(ray), c = center.squaredNorm() - 1.0F;
+  const float a = dot(ray, ray), b = dot(center, ray), c = dot(center, center) - 1.0F;
   const float discriminant = b * b - a * c;
   if (discriminant <= 0) return 0;
   return std::max(0.0F, (-b - std::sqrt(discriminant)) / a);
@@ -86,7 +86,7 @@ void Renderer::set_pose(const Eigen::Isometry3d& T_world_camera) {
 }
 
 Renderer::LinearForm Renderer::along(const Eigen::Vector3f& direction_world) const {
-  return {direction_world.dot(ray0_), direction_world.dot(ray_u_), direction_world.dot(ray_v_)};
+  return {dot(direction_world, ray0_), dot(direction_world, ray_u_), dot(direction_world, ray_v_)};
 }
 
 void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& textures) {
@@ -95,7 +95,7 @@ void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& tex
   for (const Face& face : geometry.faces) {
     const Eigen::Vector3f normal = face.axis_s.cross(face.axis_t);
     const Eigen::Vector3f camera_from_origin = position_ - face.origin;
-    const float distance_m = normal.dot(camera_from_origin);
+    const float distance_m = dot(normal, camera_from_origin);
     if (distance_m < 1e-4F) continue;  // seen from behind
     VisibleFace visible;
     visible.texture = &textures[static_cast<std::size_t>(face.texture)];
@@ -106,7 +106,7 @@ void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& tex
     const float scale = visible.texture->texels_per_m;
     const LinearForm toward = along(normal * (-1.0F / distance_m));  // 1/z = -(n . ray) / distance
     const auto texture_form = [&](const Eigen::Vector3f& axis) {     // s/z = axis . (origin_offset / z + ray)
-      const float offset_m = axis.dot(camera_from_origin);
+      const float offset_m = dot(axis, camera_from_origin);
       const LinearForm ray = along(axis);
       return LinearForm{scale * (offset_m * toward.at_origin + ray.at_origin),
                         scale * (offset_m * toward.per_u + ray.per_u), scale * (offset_m * toward.per_v + ray.per_v)};
@@ -127,10 +127,10 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   const Eigen::Matrix3f R_world_body = ellipsoid.T_world_body.linear();
   const Eigen::Matrix3f to_sphere = ellipsoid.semi_axes_m.cwiseInverse().asDiagonal() * R_world_body.transpose();
   VisibleEllipsoid visible;
-  visible.center = to_sphere * (position_ - ellipsoid.T_world_body.translation());
-  visible.ray0 = to_sphere * ray0_;
-  visible.ray_u = to_sphere * ray_u_;
-  visible.ray_v = to_sphere * ray_v_;
+  visible.center = times(to_sphere, position_ - ellipsoid.T_world_body.translation());
+  visible.ray0 = times(to_sphere, ray0_);
+  visible.ray_u = times(to_sphere, ray_u_);
+  visible.ray_v = times(to_sphere, ray_v_);
   visible.normal_to_world = to_sphere.transpose();
   visible.bounds = bounds;
   visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
@@ -289,7 +289,8 @@ void Renderer::shade_face_run(const VisibleFace& face, int row, Span span) {
 }
 
 void Renderer::shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, Span span) {
-  static const Eigen::Vector3f kLight = Eigen::Vector3f(0.35F, -0.45F, 0.82F).normalized();
+  static const Eigen::Vector3f kFromAbove(0.35F, -0.45F, 0.82F);
+  static const Eigen::Vector3f kLight = kFromAbove / std::sqrt(dot(kFromAbove, kFromAbove));
   const float* inverse_depth = inverse_depth_.ptr<float>(row);
   const float footprint = footprint_texels(ellipsoid.texture->texels_per_m, inverse_depth[(span.begin + span.end) / 2]);
   const MipLevel& level = level_for(*ellipsoid.texture, footprint);
@@ -299,8 +300,9 @@ void Renderer::shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, S
   for (int column = span.begin; column < span.end; ++column, pixel += 3) {
     const Eigen::Vector3f ray = row_ray + ellipsoid.ray_u * static_cast<float>(column);
     const Eigen::Vector3f on_sphere = ellipsoid.center + ray / inverse_depth[column];
-    const Eigen::Vector3f normal_world = (ellipsoid.normal_to_world * on_sphere).normalized();
-    const auto light = static_cast<std::uint32_t>(256.0F * (0.68F + 0.32F * normal_world.dot(kLight)));
+    const Eigen::Vector3f across = times(ellipsoid.normal_to_world, on_sphere);
+    const Eigen::Vector3f normal_world = across / std::sqrt(dot(across, across));
+    const auto light = static_cast<std::uint32_t>(256.0F * (0.68F + 0.32F * dot(normal_world, kLight)));
     const float s =
         ellipsoid.texture->wraps ? around(on_sphere) * width : (on_sphere.x() + on_sphere.y() + 1.42F) / 2.84F * width;
     const float t = (1.0F - on_sphere.z()) / 2.0F * height;

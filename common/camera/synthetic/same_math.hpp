@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 
-/// What C libraries round differently as float, computed as double: a scene is then the same with each of them.
+/// A scene is the same with every C library and on every processor: what C libraries round differently as float is
+/// computed as double, and sums have one order (Eigen adds by twos, and without rounding between, where a processor has
+/// instructions for two floats).
 namespace rtd::camera::synthetic {
 
 inline float sine(double rad) {
@@ -23,6 +25,26 @@ inline float angle_rad(double y, double x) {
 
 inline float power(double base, double exponent) {
   return static_cast<float>(std::pow(base, exponent));
+}
+
+inline float dot(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return a.x() * b.x() + (a.y() * b.y() + a.z() * b.z());
+}
+
+inline Eigen::Vector3f times(const Eigen::Matrix3f& M, const Eigen::Vector3f& v) {
+  return {dot(M.row(0), v), dot(M.row(1), v), dot(M.row(2), v)};
+}
+
+inline Eigen::Vector3f transformed(const Eigen::Isometry3f& T, const Eigen::Vector3f& p) {
+  return times(T.linear(), p) + T.translation();
+}
+
+inline Eigen::Isometry3f composed(const Eigen::Isometry3f& T_a_b, const Eigen::Isometry3f& T_b_c) {
+  Eigen::Isometry3f T_a_c = Eigen::Isometry3f::Identity();
+  for (int column = 0; column < 3; ++column)
+    T_a_c.linear().col(column) = times(T_a_b.linear(), T_b_c.linear().col(column));
+  T_a_c.translation() = transformed(T_a_b, T_b_c.translation());
+  return T_a_c;
 }
 
 /// Of `turned_rad` about a unit vector.
