@@ -4,29 +4,16 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <thread>
 
+#include "common/io/fd_writing.hpp"
+
 namespace rtd::bus {
 
 inline constexpr char kShmFolder[] = "/dev/shm";
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// The folder of shared memory, with one process at a time that chooses a name in it or removes what was left there.
 /// Nothing of the lock stays, and that of a killed process ends. Anyone may hold it: who has waited for `patience`
@@ -44,10 +31,10 @@ class ShmFolder {
     }
   }
   bool locked() const { return locked_; }
-  const Descriptor& descriptor() const { return folder_; }
+  const io::Descriptor& descriptor() const { return folder_; }
 
  private:
-  Descriptor folder_;
+  io::Descriptor folder_;
   bool locked_ = false;
 };
 

@@ -173,7 +173,7 @@ std::string shm_group(const std::string& name) {
   return group;
 }
 
-std::map<std::string, Group> list_groups(const Descriptor& folder, const std::string& path) {
+std::map<std::string, Group> list_groups(const io::Descriptor& folder, const std::string& path) {
   std::map<std::string, Group> groups;
   for (const std::string& name : list_folder(path)) {
     struct stat file {};
@@ -187,8 +187,8 @@ std::map<std::string, Group> list_groups(const Descriptor& folder, const std::st
 }
 
 /// Locks are seen where processes are not: across PID namespaces.
-bool is_locked(const Descriptor& folder, const Candidate& file) {
-  const Descriptor opened(openat(folder.get(), file.name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+bool is_locked(const io::Descriptor& folder, const Candidate& file) {
+  const io::Descriptor opened(openat(folder.get(), file.name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   return opened.get() >= 0 && flock(opened.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
@@ -206,7 +206,7 @@ const UnreadableProcess* hidden_user(const Candidate& file, const ShmUsers& user
 }
 
 /// Why a group must stay; empty: no process needs it.
-std::string reason_to_stay(const Group& group, const ShmUsers& users, const Descriptor& folder,
+std::string reason_to_stay(const Group& group, const ShmUsers& users, const io::Descriptor& folder,
                            const CleanOptions& options) {
   for (const Candidate& file : group) {
     if (users.in_use.count(file.id) > 0) return "in use";
@@ -222,7 +222,7 @@ std::string reason_to_stay(const Group& group, const ShmUsers& users, const Desc
 }
 
 /// Removes the file unless another one has taken its name.
-std::string remove_file(const Descriptor& folder, const Candidate& file) {
+std::string remove_file(const io::Descriptor& folder, const Candidate& file) {
   struct stat now {};
   if (fstatat(folder.get(), file.name.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) return {};  // already removed
   if (FileId(now.st_dev, now.st_ino) != file.id) return "replaced meanwhile";
@@ -230,7 +230,7 @@ std::string remove_file(const Descriptor& folder, const Candidate& file) {
   return errno == EPERM || errno == EACCES ? "belongs to user " + std::to_string(file.owner) : std::strerror(errno);
 }
 
-void clean_group(const Group& group, std::string reason, const Descriptor& folder, const CleanOptions& options,
+void clean_group(const Group& group, std::string reason, const io::Descriptor& folder, const CleanOptions& options,
                  CleanReport& report) {
   for (const Candidate& file : group) {
     std::string why = reason;
@@ -258,7 +258,7 @@ CleanReport remove_shm_leftovers(const CleanOptions& options) {
   CleanReport report;
   const ShmFolder locked(options.shm_dir, std::chrono::milliseconds(100));
   if (!locked.locked()) return report;  // another one's list would be out of date
-  const Descriptor& folder = locked.descriptor();
+  const io::Descriptor& folder = locked.descriptor();
   const auto groups = list_groups(folder, options.shm_dir);
   if (groups.empty()) return report;
   const bool blind = in_first_ipc_namespace(options.proc_dir) && !in_first_pid_namespace(options.proc_dir);

@@ -60,8 +60,8 @@ Eigen::Vector2f FloorPath::position_m(double t_s) const {
 }
 
 float FloorPath::heading_rad(double t_s) const {
-  return static_cast<float>(std::atan2(area_.reach_y_m * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
-                                       area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_)));
+  return angle_rad(area_.reach_y_m * rate_y_ * std::cos(rate_y_ * t_s + phase_y_),
+                   area_.reach_x_m * rate_x_ * std::cos(rate_x_ * t_s + phase_x_));
 }
 
 Walker::Walker(std::uint64_t seed, const WalkArea& area, FigureLook look, std::vector<Texture>& textures)

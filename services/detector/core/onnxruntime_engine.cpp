@@ -38,6 +38,8 @@ std::unique_ptr<Engine> make_onnxruntime_engine(const EngineModel&, const std::s
 #include <string_view>
 #include <utility>
 
+#include "common/io/fd_writing.hpp"
+
 namespace rtd::detector {
 namespace {
 
@@ -130,15 +132,15 @@ class WithoutSchemaErrors {
     if (operators == nullptr) return;
     dlclose(operators);
     if (!first.exchange(false)) return;
-    stderr_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
-    written_ = memfd_create("rtd-stderr", MFD_CLOEXEC);
-    if (stderr_ >= 0 && written_ >= 0) dup2(written_, STDERR_FILENO);
+    written_.reset(memfd_create("rtd-stderr", MFD_CLOEXEC));
+    if (written_.get() < 0) return;
+    stderr_.reset(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3));
+    if (stderr_.get() >= 0) dup2(written_.get(), STDERR_FILENO);
   }
   ~WithoutSchemaErrors() {
-    if (stderr_ >= 0) dup2(stderr_, STDERR_FILENO);
-    if (stderr_ >= 0 && written_ >= 0) pass_on();
-    for (const int fd : {stderr_, written_})
-      if (fd >= 0) close(fd);
+    if (stderr_.get() < 0) return;
+    dup2(stderr_.get(), STDERR_FILENO);
+    pass_on();
   }
   WithoutSchemaErrors(const WithoutSchemaErrors&) = delete;
   WithoutSchemaErrors& operator=(const WithoutSchemaErrors&) = delete;
@@ -147,15 +149,15 @@ class WithoutSchemaErrors {
   void pass_on() const {
     std::string text;
     std::array<char, 4096> part{};
-    lseek(written_, 0, SEEK_SET);
-    for (ssize_t n = 0; (n = read(written_, part.data(), part.size())) > 0;)
+    lseek(written_.get(), 0, SEEK_SET);
+    for (ssize_t n = 0; (n = read(written_.get(), part.data(), part.size())) > 0;)
       text.append(part.data(), static_cast<std::size_t>(n));
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
       if (!line.empty() && !line.starts_with("Schema error: Trying to register")) std::cerr << line << '\n';
   }
 
-  int stderr_ = -1, written_ = -1;
+  io::Descriptor stderr_, written_;
 };
 
 Owned<OrtSession> open_session(const Library& library, const EngineModel& model, int gpu) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Runs TRAIN and fails unless the file TRAINED is equal to EXPECTED or, where EXACT is not set, as large within 2 %:
-# other versions of OpenCV describe a few features in another way.
+# other versions of OpenCV probably describe a few features in another way.
 execute_process(COMMAND "${TRAIN}" "${TRAINED}" COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${EXPECTED}" "${TRAINED}" RESULT_VARIABLE different)
 if(different AND NOT EXACT)
