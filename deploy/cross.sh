@@ -42,7 +42,7 @@ install_cross() {
     inside "$place" apt-get update -qq
     packages_for
   )
-  inside "$place" apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 qemu-user-static ccache \
+  inside "$place" apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 ccache \
     python3-minimal dpkg-dev file "${packages[@]}" >"$work/apt.log" 2>&1 || {
     tail -5 "$work/apt.log" >&2
     fail "the packages could not be installed"
@@ -61,16 +61,6 @@ build() {
   }
   inside "$place" cmake --build build/arm64 ${1:+--target "$@"}
   since "$began" "built for arm64"
-}
-
-# Programs for arm64 start by themselves, also those that a program starts, until the end of this script.
-emulate() {
-  local entries=/proc/sys/fs/binfmt_misc
-  [ -e "$entries/register" ] || mount -t binfmt_misc binfmt_misc "$entries" || fail "this kernel has no binfmt_misc"
-  [ ! -e "$entries/qemu-aarch64" ] || return 0
-  mount -t binfmt_misc binfmt_misc "$place$entries"
-  inside "$place" sh -c 'printf "%s" ":rtd-aarch64:M::\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00:\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff:/usr/bin/qemu-aarch64-static:F" >/proc/sys/fs/binfmt_misc/register'
-  trap 'echo -1 >/proc/sys/fs/binfmt_misc/rtd-aarch64; unmount_systems' EXIT
 }
 
 # A rendered scene here, where the product is built here, and under qemu: the same poses within a micrometre.
@@ -100,7 +90,7 @@ run_tests() {
       ;;
   esac
   began=$SECONDS
-  emulate
+  emulate_arm64
   inside "$place" ctest --test-dir build/arm64 -j "$(nproc)" --timeout 1200 --output-on-failure "$@" || status=$?
   since "$began" "tests under qemu"
   lockstep || status=1
@@ -137,7 +127,7 @@ case "$command" in
     build rtd_packages
     inside "$place" sh -c 'cd build/arm64 && cpack -G DEB >cpack.log 2>&1 || { tail -20 cpack.log >&2; exit 1; }'
     ls -l "$place"/root/rtd-slam/build/arm64/packages/*.deb
-    emulate
+    emulate_arm64
     install_system "$work/user" "$system" arm64
     try_packages "$work/user" "$place/root/rtd-slam/build/arm64/packages"
     ;;

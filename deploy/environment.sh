@@ -30,7 +30,7 @@ build_release() {
 }
 
 # Passes on what ninja prints, but for its steps: of these it says how many are done and how long the rest will take, by
-# the pace of those so far. The first ones are the slowest, so that pace is mixed with that of a whole build, three
+# the pace of those so far. The first ones are the slowest, so that pace is mixed with that of a whole build, six
 # seconds of a core a step, as if a sixth of the steps had been built so before.
 show_progress() {
   local began=$SECONDS next=$((SECONDS + 15)) cores line seconds before
@@ -41,7 +41,7 @@ show_progress() {
     elif [ "$SECONDS" -ge "$next" ] && [ "${BASH_REMATCH[1]}" -ge 10 ]; then
       next=$((SECONDS + 15))
       before=$((BASH_REMATCH[2] / 6))
-      seconds=$(((3 * before / cores + SECONDS - began) * (BASH_REMATCH[2] - BASH_REMATCH[1]) /
+      seconds=$(((6 * before / cores + SECONDS - began) * (BASH_REMATCH[2] - BASH_REMATCH[1]) /
         (before + BASH_REMATCH[1])))
       echo "$(basename "$0" .sh): ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps built, about" \
         "$((seconds / 60)) min $((seconds % 60)) s to go"

@@ -16,8 +16,8 @@ Usage: deploy/try_on.sh bookworm|trixie[:arm64] [demo | test | package] [--keep 
   test           ./deploy/test.sh; ARGUMENTS are passed on, e.g. -L unit
   package        ./deploy/package.sh, then the packages on another fresh system: first pose, upgrade, remove, purge
   --keep FOLDER  the system goes to this folder, which must not exist, and stays
-Needs root and debootstrap; for arm64 on another machine qemu-user-static, and hours: deploy/cross.sh builds there with
-the compiler of this machine and does the same with the packages.
+Needs root and debootstrap. arm64 on amd64 runs under qemu, except for the compiler: that is the one of amd64 with the
+same version.
 Debian comes from where apt of this machine takes it.
 TEXT
 }
@@ -32,8 +32,7 @@ require_chroot
 own="$(dpkg --print-architecture)"
 architecture="$own"
 [ "${system%:*}" = "$system" ] || architecture="${system#*:}"
-[ "$architecture" = "$own" ] || [ -e /proc/sys/fs/binfmt_misc/qemu-aarch64 ] ||
-  fail "this machine runs no programs for $architecture: apt-get install qemu-user-static binfmt-support" 2
+[ "$architecture" = "$own" ] || [ "$own" = amd64 ] || fail "arm64 is tried on arm64 or amd64, not on $own" 2
 in_namespace "$0" "$@"
 shift
 
@@ -50,10 +49,12 @@ if [ "${1:-}" = --keep ]; then
   shift 2
 fi
 
+[ "$architecture" = "$own" ] || emulate_arm64
 install_system "$place" "${system%:*}" "$architecture"
 [ "$action" != package ] || cp -a "$place" "$work/user"
 copy_project "$place"
 mount_system "$place"
+[ "$architecture" = "$own" ] || lend_compiler "$place" "${system%:*}"
 began=$SECONDS
 inside "$place" "./deploy/$action.sh" "$@"
 since "$began" "./deploy/$action.sh"

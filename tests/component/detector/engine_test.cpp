@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -143,6 +144,19 @@ TEST_F(EngineTest, onnxruntime_says_why_it_does_not_take_a_network) {
   std::ofstream(config_.model_path, std::ios::binary) << onnx;
   config_.engine = full_name("onnxruntime");
   EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<EngineError>(HasSubstr("cannot load this network")));
+}
+
+/// In a process of its own: what the library writes comes with the first network alone.
+TEST_F(EngineTest, onnxruntime_opens_a_network_without_a_word) {
+  if (const std::string why = absent("onnxruntime"); !why.empty()) GTEST_SKIP() << why;
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  config_.engine = full_name("onnxruntime");
+  EXPECT_EXIT(
+      {
+        const Network network(config_);
+        std::exit(0);
+      },
+      ::testing::ExitedWithCode(0), IsEmpty());
 }
 
 TEST_F(EngineTest, a_device_that_is_not_there_is_an_error_that_says_which_are) {

@@ -62,7 +62,7 @@ class Progress(unittest.TestCase):
         shown = run("bash", "-c", script, "demo.sh").stdout
         found = re.search(r"^demo: 32 of 96 steps built, about (\d+) min (\d+) s to go$", shown, re.MULTILINE)
         self.assertTrue(found, shown)
-        usual_s = 3 * 16 // int(run("nproc").stdout)  # of as many steps as are a sixth of all
+        usual_s = 6 * 16 // int(run("nproc").stdout)  # of as many steps as are a sixth of all
         self.assertAlmostEqual(60 * int(found.group(1)) + int(found.group(2)), (usual_s + 16) * 64 / 48, delta=6)
 
 

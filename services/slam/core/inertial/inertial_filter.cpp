@@ -28,6 +28,17 @@ Eigen::Isometry3d pose_of(const Matrix3& R, const Eigen::Vector3d& p) {
   return T;
 }
 
+/// Products for any size: with fixed ones, Eigen is compiled once more for each combination.
+using AnyMatrix = Eigen::Ref<const Eigen::MatrixXd>;
+Eigen::MatrixXd product(const AnyMatrix& A, const AnyMatrix& B) {
+  return A * B;
+}
+
+/// The covariance of A x, where P is that of x.
+Eigen::MatrixXd propagated(const AnyMatrix& A, const AnyMatrix& P) {
+  return product(product(A, P), A.transpose());
+}
+
 }  // namespace
 
 InertialFilter::InertialFilter(const ImuConfig& config, const Eigen::Isometry3d& T_imu_camera,
@@ -66,13 +77,13 @@ void InertialFilter::predict(const inertial::Preintegration& motion) {
   G.block<3, 3>(kRotation, 0) = R_next;
   G.block<3, 3>(kVelocity, 3) = R;
   G.block<3, 3>(kPosition, 6) = R;
-  P_ = F * P_ * F.transpose() + G * motion.covariance() * G.transpose();
+  P_ = propagated(F, P_) + propagated(G, motion.covariance());
   P_.diagonal().segment<3>(kGyroBias).array() += std::pow(config_.gyro_walk_rad_s2_rthz, 2) * dt_s;
   P_.diagonal().segment<3>(kAccelBias).array() += std::pow(config_.accel_walk_m_s3_rthz, 2) * dt_s;
 
   for (PredictedFrame& frame : predicted_)
-    frame.covariance_with_state = (frame.covariance_with_state * F.transpose()).eval();
-  by_learnt_ = (F * by_learnt_).eval();
+    frame.covariance_with_state = product(frame.covariance_with_state, F.transpose());
+  by_learnt_ = product(F, by_learnt_);
 
   const Eigen::Vector3d p =
       state_.T_world_imu.translation() + state_.velocity_m_s * dt_s + 0.5 * dt_s * dt_s * g + moved;
@@ -112,7 +123,7 @@ Eigen::Matrix3d InertialFilter::gyro_bias_covariance() const {
 
 PredictedPose InertialFilter::camera() const {
   const Eigen::Matrix<double, 6, 18> H = camera_jacobian();
-  return {state_.T_world_imu * T_imu_camera_, H * P_ * H.transpose()};
+  return {state_.T_world_imu * T_imu_camera_, propagated(H, P_)};
 }
 
 /// What must be known of them before anything is predicted, and of the accelerometer's bias at first.
@@ -125,15 +136,15 @@ Eigen::Matrix<double, 9, 1> InertialFilter::learnt_variances() const {
 
 PredictedPose InertialFilter::doubted_camera() const {
   PredictedPose pose = camera();
-  const Eigen::Matrix<double, 6, 9> J = camera_jacobian() * by_learnt_;
-  pose.covariance += J * learnt_variances().asDiagonal() * J.transpose();
+  const Eigen::MatrixXd of_learnt = learnt_variances().asDiagonal();
+  pose.covariance += propagated(product(camera_jacobian(), by_learnt_), of_learnt);
   return pose;
 }
 
 void InertialFilter::doubt() {
-  const Eigen::Matrix<double, 9, 18> error = learnt_variances().asDiagonal() * by_learnt_.transpose();
-  P_ += by_learnt_ * error;
-  for (PredictedFrame& frame : predicted_) frame.covariance_with_state += frame.by_learnt * error;
+  const Eigen::MatrixXd error = learnt_variances().asDiagonal() * by_learnt_.transpose();
+  P_ += product(by_learnt_, error);
+  for (PredictedFrame& frame : predicted_) frame.covariance_with_state += product(frame.by_learnt, error);
 }
 
 void InertialFilter::trust() {
@@ -144,21 +155,21 @@ void InertialFilter::trust() {
 
 /// The Kalman update in Joseph's form, and the error put into the state. Eq. (9).
 void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& residual, const Eigen::MatrixXd& R) {
-  const Eigen::MatrixXd S = H * P_ * H.transpose() + R;
+  const Eigen::MatrixXd S = propagated(H, P_) + R;
   const auto of_S = S.ldlt();
-  const Eigen::MatrixXd K = of_S.solve(H * P_).transpose();
-  const Matrix18d keep = Matrix18d::Identity() - K * H;
-  const Eigen::VectorXd surprise = H.transpose() * of_S.solve(residual);
+  const Eigen::MatrixXd K = of_S.solve(product(H, P_)).transpose();
+  const Matrix18d keep = Matrix18d::Identity() - product(K, H);
+  const Eigen::MatrixXd surprise = product(H.transpose(), of_S.solve(residual));
   for (PredictedFrame& frame : predicted_) {
-    const geometry::Vector6d error = frame.covariance_with_state * surprise;
+    const geometry::Vector6d error = product(frame.covariance_with_state, surprise);
     frame.T_world_camera = geometry::normalized(pose_of(so3_exp(error.tail<3>()) * frame.T_world_camera.linear(),
                                                         frame.T_world_camera.translation() + error.head<3>()));
-    frame.covariance_with_state = (frame.covariance_with_state * keep.transpose()).eval();
+    frame.covariance_with_state = product(frame.covariance_with_state, keep.transpose());
   }
-  by_learnt_ = (keep * by_learnt_).eval();
-  P_ = (keep * P_ * keep.transpose() + K * R * K.transpose()).eval();
+  by_learnt_ = product(keep, by_learnt_);
+  P_ = propagated(keep, P_) + propagated(K, R);
   P_ = (0.5 * (P_ + P_.transpose())).eval();
-  const Eigen::Matrix<double, 18, 1> error = K * residual;
+  const Eigen::Matrix<double, 18, 1> error = product(K, residual);
   state_.T_world_imu = geometry::normalized(pose_of(so3_exp(error.segment<3>(kRotation)) * state_.T_world_imu.linear(),
                                                     state_.T_world_imu.translation() + error.segment<3>(kPosition)));
   state_.velocity_m_s += error.segment<3>(kVelocity);
@@ -170,7 +181,7 @@ void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& re
 void InertialFilter::remember(std::uint64_t seq) {
   const Eigen::Isometry3d T_world_camera = state_.T_world_imu * T_imu_camera_;
   const Eigen::Matrix<double, 6, 18> H = camera_jacobian();
-  predicted_.push_back({seq, T_world_camera, T_world_camera, H * P_, H * by_learnt_});
+  predicted_.push_back({seq, T_world_camera, T_world_camera, product(H, P_), product(H, by_learnt_)});
   measured_since_predicted_ = 0;
 }
 
@@ -220,14 +231,14 @@ void InertialFilter::move(const Eigen::Isometry3d& T_new_old) {
   state_.gravity_m_s2 = R * state_.gravity_m_s2;
   Matrix18d A = Matrix18d::Identity();
   for (const int place : {kRotation, kPosition, kVelocity, kGravity}) A.block<3, 3>(place, place) = R;
-  P_ = (A * P_ * A.transpose()).eval();
-  by_learnt_ = (A * by_learnt_).eval();
+  P_ = propagated(A, P_);
+  by_learnt_ = product(A, by_learnt_);
+  const geometry::Matrix6d of_pose = A.topLeftCorner<6, 6>();  // both rotations are R
   for (PredictedFrame& frame : predicted_) {
     frame.T_world_claimed = geometry::normalized(T_new_old * frame.T_world_claimed);
     frame.T_world_camera = geometry::normalized(T_new_old * frame.T_world_camera);
-    frame.covariance_with_state =
-        (A.topLeftCorner<6, 6>() * frame.covariance_with_state * A.transpose()).eval();  // both rotations are R
-    frame.by_learnt = (A.topLeftCorner<6, 6>() * frame.by_learnt).eval();
+    frame.covariance_with_state = product(product(of_pose, frame.covariance_with_state), A.transpose());
+    frame.by_learnt = product(of_pose, frame.by_learnt);
   }
 }
 
