@@ -43,7 +43,7 @@ install_system() {
   }
   cp /etc/resolv.conf "$1/etc/resolv.conf"
   echo force-unsafe-io >"$1/etc/dpkg/dpkg.cfg.d/rtd" # it is thrown away: no waiting for the disk
-  since "$began" "system installed"
+  since "$began" "${1##*/} installed"
 }
 
 # On itself first: "ip netns exec" wants / to be a mount.
@@ -71,6 +71,7 @@ emulate_arm64() {
   [ ! -e "$entries/qemu-aarch64" ] || return 0
   [ ! -e "$emulated" ] || fail "another run has registered its qemu; wait for it, or end it: echo -1 >$emulated"
   install_system "$place" trixie "$(dpkg --print-architecture)"
+  mount_system "$place"
   mount -t binfmt_misc binfmt_misc "$place$entries"
   inside "$place" sh -c 'apt-get install -y -qq --no-install-recommends qemu-user >/dev/null
     printf "%s" ":rtd-aarch64:M::\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00:\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff:/usr/bin/qemu-aarch64:F" >/proc/sys/fs/binfmt_misc/register'
@@ -81,13 +82,15 @@ emulate_arm64() {
 lend_compiler() {
   local place="$1" tools="$work/compiler" program
   install_system "$tools" "$2" "$(dpkg --print-architecture)"
+  mount_system "$tools"
   inside "$tools" sh -c 'apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 >/dev/null'
   mkdir -p "$place/opt/compiler"
   mount --bind "$tools/usr" "$place/opt/compiler"
-  # Where those programs look for their loader and its libraries.
+  # Where those programs look for their loader and its libraries, and what the C library's linker script names.
   ln -s ../opt/compiler/lib64 "$place/usr/lib64"
   ln -s usr/lib64 "$place/lib64"
   ln -s ../../opt/compiler/lib/x86_64-linux-gnu "$place/usr/lib/x86_64-linux-gnu"
+  ln -s ../opt/compiler/aarch64-linux-gnu "$place/usr/aarch64-linux-gnu"
   for program in gcc g++; do
     ln -s "/opt/compiler/bin/aarch64-linux-gnu-$program" "$place/usr/local/bin/$program"
   done

@@ -45,11 +45,12 @@ void add_columns(const std::int16_t* __restrict sums, int columns, std::uint8_t*
 void add_rows_16(const Rows& rows, int columns, std::int16_t* sums) {
   add_rows(rows, columns, sums);
 }
+
+#if defined(__x86_64__)
 RTD_AVX2 void add_rows_32(const Rows& rows, int columns, std::int16_t* sums) {
   add_rows(rows, columns, sums);
 }
 
-#if defined(__x86_64__)
 constexpr int kColumnBlock = 16;
 
 /// Both weights for each pair of neighbours.

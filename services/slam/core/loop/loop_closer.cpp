@@ -38,9 +38,10 @@ KeyframeId newest_before(const Map& map, MapId component, KeyframeId id) {
 
 std::optional<LoopClosure> LoopCloser::close(Map& map, const KeyframeDatabase& places, KeyframeId newest) {
   const std::optional<Loop> loop = detector_.detect(map, places, newest);
-  if (!loop) return std::nullopt;
-  const Eigen::Vector3d before = map.find_keyframe(newest)->T_world_camera.translation();
-  const bool two_maps = map.find_keyframe(newest)->map != map.find_keyframe(loop->meeting.place)->map;
+  const Keyframe* const keyframe = map.find_keyframe(newest);
+  if (!loop || keyframe == nullptr) return std::nullopt;
+  const Eigen::Vector3d before = keyframe->T_world_camera.translation();
+  const bool two_maps = keyframe->map != map.find_keyframe(loop->meeting.place)->map;
   LoopClosure closure;
   closure.edge = make_edge(map, *loop);
   closure.older_ns = map.find_keyframe(closure.edge.older)->frame->stamp_ns;
