@@ -57,35 +57,41 @@ mount_system() {
 }
 
 unmount_systems() {
-  [ ! -e "$emulated" ] || echo -1 >"$emulated"
+  [ -z "${registered:-}" ] || echo -1 >"$registered"
   umount -R "$work"/* 2>/dev/null || true
   rm -rf --one-file-system "$work"
 }
 
+# install_tools RELEASE PACKAGE: a system of this machine's architecture in $work/tools-RELEASE, with the package.
+install_tools() {
+  local tools="$work/tools-$1"
+  if [ ! -d "$tools" ]; then
+    install_system "$tools" "$1" "$(dpkg --print-architecture)"
+    mount_system "$tools"
+  fi
+  inside "$tools" sh -c 'apt-get install -y -qq --no-install-recommends "$1" >/dev/null' sh "$2"
+}
+
 # Programs for arm64 start by themselves, also those that a program starts, until the end of this script. With qemu of
 # Debian 13 on any system: that of Debian 12 refuses multicast options, without which DDS finds no process.
-emulated=/proc/sys/fs/binfmt_misc/rtd-aarch64
 emulate_arm64() {
-  local entries=/proc/sys/fs/binfmt_misc place="$work/emulator"
+  local entries=/proc/sys/fs/binfmt_misc entry=/proc/sys/fs/binfmt_misc/rtd-aarch64
   [ -e "$entries/register" ] || mount -t binfmt_misc binfmt_misc "$entries" || fail "this kernel has no binfmt_misc"
   [ ! -e "$entries/qemu-aarch64" ] || return 0
-  [ ! -e "$emulated" ] || fail "another run has registered its qemu; wait for it, or end it: echo -1 >$emulated"
-  install_system "$place" trixie "$(dpkg --print-architecture)"
-  mount_system "$place"
-  mount -t binfmt_misc binfmt_misc "$place$entries"
-  inside "$place" sh -c 'apt-get install -y -qq --no-install-recommends qemu-user >/dev/null
-    printf "%s" ":rtd-aarch64:M::\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00:\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff:/usr/bin/qemu-aarch64:F" >/proc/sys/fs/binfmt_misc/register'
+  [ ! -e "$entry" ] || fail "another run has registered its qemu; wait for it, or, if it was killed: echo -1 >$entry"
+  install_tools trixie qemu-user
+  mount -t binfmt_misc binfmt_misc "$work/tools-trixie$entries"
+  inside "$work/tools-trixie" sh -c 'printf "%s" ":rtd-aarch64:M::\x7fELF\x02\x01\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x02\x00\xb7\x00:\xff\xff\xff\xff\xff\xff\xff\x00\xff\xff\xff\xff\xff\xff\xff\xff\xfe\xff\xff\xff:/usr/bin/qemu-aarch64:F" >/proc/sys/fs/binfmt_misc/register'
+  registered="$entry"
 }
 
 # lend_compiler FOLDER RELEASE: a system of arm64 compiles and links with programs of this machine, of the same version.
 # Under qemu one compilation takes minutes; all else that it runs is its own.
 lend_compiler() {
-  local place="$1" tools="$work/compiler" program
-  install_system "$tools" "$2" "$(dpkg --print-architecture)"
-  mount_system "$tools"
-  inside "$tools" sh -c 'apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 >/dev/null'
+  local place="$1" program
+  install_tools "$2" crossbuild-essential-arm64
   mkdir -p "$place/opt/compiler"
-  mount --bind "$tools/usr" "$place/opt/compiler"
+  mount --bind "$work/tools-$2/usr" "$place/opt/compiler"
   # Where those programs look for their loader and its libraries, and what the C library's linker script names.
   ln -s ../opt/compiler/lib64 "$place/usr/lib64"
   ln -s usr/lib64 "$place/lib64"

@@ -3,8 +3,8 @@
 #
 # One place for how our targets are compiled and how tests are declared.
 #   rtd_library(NAME [BRIEF] SOURCES... [PUBLIC libs...] [PRIVATE libs...])
-#     Static library, includes from the repository root. BRIEF: works at the start, at the end or on demand, not for
-#     every frame. The sources of executables do the same.
+#     Static library, includes from the repository root. BRIEF: works at the start, at the end or on demand, and for a
+#     frame only a few calls, without a loop over pixels, points or bytes. Taken for granted of executables' own sources.
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
 #   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL])
 #     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.

@@ -9,7 +9,7 @@
 
 #include "common/io/bytes.hpp"
 
-/// What the sinks of this folder share.
+/// Descriptors, and what the sinks of this folder share.
 namespace rtd::io {
 
 /// Closes a descriptor at its end.

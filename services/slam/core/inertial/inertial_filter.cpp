@@ -81,8 +81,9 @@ void InertialFilter::predict(const inertial::Preintegration& motion) {
   P_.diagonal().segment<3>(kGyroBias).array() += std::pow(config_.gyro_walk_rad_s2_rthz, 2) * dt_s;
   P_.diagonal().segment<3>(kAccelBias).array() += std::pow(config_.accel_walk_m_s3_rthz, 2) * dt_s;
 
+  const Matrix18d F_transposed = F.transpose();
   for (PredictedFrame& frame : predicted_)
-    frame.covariance_with_state = product(frame.covariance_with_state, F.transpose());
+    frame.covariance_with_state = product(frame.covariance_with_state, F_transposed);
   by_learnt_ = product(F, by_learnt_);
 
   const Eigen::Vector3d p =
@@ -159,12 +160,13 @@ void InertialFilter::correct(const Eigen::MatrixXd& H, const Eigen::VectorXd& re
   const auto of_S = S.ldlt();
   const Eigen::MatrixXd K = of_S.solve(product(H, P_)).transpose();
   const Matrix18d keep = Matrix18d::Identity() - product(K, H);
+  const Matrix18d keep_transposed = keep.transpose();
   const Eigen::MatrixXd surprise = product(H.transpose(), of_S.solve(residual));
   for (PredictedFrame& frame : predicted_) {
     const geometry::Vector6d error = product(frame.covariance_with_state, surprise);
     frame.T_world_camera = geometry::normalized(pose_of(so3_exp(error.tail<3>()) * frame.T_world_camera.linear(),
                                                         frame.T_world_camera.translation() + error.head<3>()));
-    frame.covariance_with_state = product(frame.covariance_with_state, keep.transpose());
+    frame.covariance_with_state = product(frame.covariance_with_state, keep_transposed);
   }
   by_learnt_ = product(keep, by_learnt_);
   P_ = propagated(keep, P_) + propagated(K, R);
@@ -233,11 +235,12 @@ void InertialFilter::move(const Eigen::Isometry3d& T_new_old) {
   for (const int place : {kRotation, kPosition, kVelocity, kGravity}) A.block<3, 3>(place, place) = R;
   P_ = propagated(A, P_);
   by_learnt_ = product(A, by_learnt_);
+  const Matrix18d A_transposed = A.transpose();
   const geometry::Matrix6d of_pose = A.topLeftCorner<6, 6>();  // both rotations are R
   for (PredictedFrame& frame : predicted_) {
     frame.T_world_claimed = geometry::normalized(T_new_old * frame.T_world_claimed);
     frame.T_world_camera = geometry::normalized(T_new_old * frame.T_world_camera);
-    frame.covariance_with_state = product(product(of_pose, frame.covariance_with_state), A.transpose());
+    frame.covariance_with_state = product(product(of_pose, frame.covariance_with_state), A_transposed);
     frame.by_learnt = product(of_pose, frame.by_learnt);
   }
 }
