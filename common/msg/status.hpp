@@ -24,6 +24,10 @@ constexpr ServiceState last_value(TypeOf<ServiceState>) {
   return ServiceState::kFailed;
 }
 
+constexpr bool is_ready(ServiceState state) {
+  return state == ServiceState::kReady || state == ServiceState::kRunning || state == ServiceState::kDegraded;
+}
+
 /// A named number of a service: a counter, a queue length, a mean time.
 struct Metric {
   std::string name;  ///< e.g. "frames_dropped"

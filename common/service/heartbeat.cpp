@@ -215,6 +215,12 @@ bool Heartbeat::alive(const std::string& service) const {
          monotonic_ns() - peer->received_ns < kGoneAfterNs;
 }
 
+bool Heartbeat::gone(const std::string& service) const {
+  const std::lock_guard lock(mutex_);
+  const Peer* const peer = find(service);
+  return peer == nullptr || peer->status.state == msg::ServiceState::kFinished || surely_gone(peer->evidence);
+}
+
 bool Heartbeat::alone() const {
   const std::lock_guard lock(mutex_);
   return peers_.peers().empty();
@@ -239,9 +245,7 @@ bool Heartbeat::ready(const std::string& service) const {
   if (!alive(service)) return false;
   const std::lock_guard lock(mutex_);
   const Peer* const peer = find(service);
-  const msg::ServiceState state = peer == nullptr ? msg::ServiceState::kStarting : peer->status.state;
-  return state == msg::ServiceState::kReady || state == msg::ServiceState::kRunning ||
-         state == msg::ServiceState::kDegraded;
+  return peer != nullptr && msg::is_ready(peer->status.state);
 }
 
 void Heartbeat::on_status(std::function<void(const msg::ServiceStatus&)> callback) {
@@ -287,6 +291,7 @@ bool Heartbeat::check_peers() {
     PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
     const bool here = find_metric(peer.status, metric::kHostId).value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
+    peer.evidence = evidence;
     const bool ended = peer.status.state == msg::ServiceState::kFinished;
     const PeerHealth health = ended ? PeerHealth::kAlive : judge(evidence);
     if (health == peer.health) continue;

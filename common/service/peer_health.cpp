@@ -12,6 +12,11 @@ PeerHealth judge(const PeerEvidence& evidence) {
   return evidence.process == ProcessState::kRunning ? PeerHealth::kHung : PeerHealth::kDead;
 }
 
+bool surely_gone(const PeerEvidence& evidence) {
+  constexpr std::int64_t kSurelyGoneAfterNs = 10'000'000'000;  // then rtd run ends a hung service at these paces
+  return evidence.process == ProcessState::kGone || evidence.silent_ns >= kSurelyGoneAfterNs;
+}
+
 std::int64_t StandstillWatch::look(std::int64_t now_ns) {
   const std::int64_t away_ns = looked_ns_ == 0 ? 0 : now_ns - looked_ns_;
   looked_ns_ = now_ns;

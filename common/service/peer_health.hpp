@@ -32,6 +32,8 @@ PeerHealth judge(const PeerEvidence& evidence);
 constexpr std::int64_t kSuspectAfterNs = 300'000'000;
 /// Silence from which on one whose process is there, or on another host, does not count as alive.
 constexpr std::int64_t kSilentAfterNs = 1'200'000'000;
+/// For what must not depend on the load of the host: its process is gone, or it has been silent for ten seconds.
+bool surely_gone(const PeerEvidence& evidence);
 
 /// From /proc/PID/stat; a zombie is gone.
 ProcessState process_state(std::int64_t pid, const std::string& proc_dir = "/proc");

@@ -60,6 +60,7 @@ bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   peer.status = status;
   peer.writer = writer;
   peer.received_ns = now_ns;
+  peer.evidence = {};
   return true;
 }
 

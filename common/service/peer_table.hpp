@@ -50,6 +50,7 @@ struct Peer {
   bus::WriterId writer{};
   std::int64_t received_ns = 0;
   PeerHealth health = PeerHealth::kAlive;
+  PeerEvidence evidence{};  ///< as it was looked at last; empty since its last heartbeat
 };
 
 /// The other services of a domain by name. Bounded, and not to be fooled by invented names:

@@ -101,6 +101,13 @@ void bind_filter_mode(auto& binder, std::string& mode) {
 }
 
 /// Of section `filter`.
+void bind_filter_detector(auto& binder, std::string& use) {
+  binder.choice("detector", use, {"auto", "on", "off"},
+                "auto: use a detector if one runs; on: and at asap and lockstep no frame before it is ready (rtd run "
+                "sets it where it has one); off: never wait, never use");
+}
+
+/// Of section `filter`.
 void bind_person_masks(auto& binder, std::string& use) {
   binder.choice("person_masks", use, {"on", "off"},
                 "on: use the detector's person masks if it sends them; off: boxes alone");

@@ -59,6 +59,9 @@ class Heartbeat {
   Work work() const;
   /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
   bool alive(const std::string& service) const;
+  /// For paces whose results must not depend on the load of a host: it has never been there, has ended, its process is
+  /// gone, or it was silent for 10 s while this process ran. Neither alive nor gone: it may be slow.
+  bool gone(const std::string& service) const;
   bool ready(const std::string& service) const;  ///< alive and in state kReady, kRunning or kDegraded
   bool alone() const;                            ///< no other service has sent a heartbeat yet
   /// A metric of another service that is alive and runs on this host.

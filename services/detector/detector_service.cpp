@@ -48,7 +48,7 @@ namespace {
 
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
 constexpr std::chrono::milliseconds kLookAtSlam{100};
-constexpr std::int64_t kSlamGoneNs = 1'500'000'000;  // without a heartbeat
+constexpr std::int64_t kSlamPatienceNs = 1'500'000'000;  // for the successor of one that is gone
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 
 std::optional<Eigen::Isometry3d> pose_of(const msg::TrackingResult& result) {
@@ -278,9 +278,9 @@ bool DetectorService::wait_for_roll(std::int64_t stamp_ns) {
     if (roll_->wait_for(stamp_ns, std::min(left, kLookAtSlam))) return true;
     waited_ns = service::monotonic_ns() - since_ns;
     runtime_.heartbeat.tick();
-    const bool alive = runtime_.heartbeat.alive("slam");
-    if (slam_seen_ && !alive && waited_ns > kSlamGoneNs) return false;
-    slam_seen_ = slam_seen_ || alive;
+    const bool gone = runtime_.heartbeat.gone("slam");
+    if (slam_seen_ && gone && waited_ns > kSlamPatienceNs) return false;
+    slam_seen_ = slam_seen_ || !gone;
   }
   return false;
 }

@@ -11,7 +11,7 @@ namespace rtd::filter {
 
 void ServiceConfig::bind(service::ConfigBinder& binder) {
   service::bind_filter_mode(binder, mode);
-  binder.choice("detector", detector, {"auto", "off"}, "auto: use a detector if one runs; off: never wait, never use");
+  service::bind_filter_detector(binder, detector);
   service::bind_person_masks(binder, person_masks);
   binder.field("detections_timeout_ms", detections_timeout_ms, {1, 600000},
                "asap, lockstep: longest wait for a living detector's boxes of one frame");

@@ -42,7 +42,7 @@ void FilterService::wait_for_detections(const msg::FrameView& frame) {
     const std::int64_t waited_ns = service::monotonic_ns() - since_ns;
     runtime_.heartbeat.tick();
     return waited_ns > std::int64_t{config_.detections_timeout_ms} * 1'000'000 ||
-           (waited_ns > kPatienceNs && !runtime_.heartbeat.alive("detector"));
+           (waited_ns > kPatienceNs && runtime_.heartbeat.gone("detector"));
   };
   if (detections_->wait_for(frame.stamp_ns, give_up)) {
     const bool complete = !masks_come() || detections_->wait_for_masks(frame.stamp_ns, give_up);
@@ -64,20 +64,25 @@ msg::DetectionUse FilterService::use_of(const DetectorUpdate& detector, const Fi
 
 void FilterService::watch_detector() {
   if (config_.detector == "off") return;
-  const bool alive = detector_alive();
-  if (alive && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_found frames={}", published_);
-  if (!alive && detector_seen_ && !detector_gone_) {
+  const bool gone = detector_gone();
+  if (!gone && (!detector_seen_ || detector_gone_)) SPDLOG_INFO("event=detector_found frames={}", published_);
+  if (gone && detector_seen_ && !detector_gone_) {
     SPDLOG_WARN("event=detector_gone frames={} effect=\"geometry only until it returns\"", published_);
   }
-  detector_gone_ = detector_seen_ && !alive;
-  detector_seen_ = detector_seen_ || alive;
+  detector_gone_ = detector_seen_ && gone;
+  detector_seen_ = detector_seen_ || !gone;
 }
 
 /// Without a wait at stake, silence is noticed sooner; in lockstep and asap a busy host must not change the result.
-bool FilterService::detector_alive() const {
+bool FilterService::detector_gone() const {
   constexpr std::int64_t kDetectorSilentNs = 450'000'000;  // two heartbeats missed: reported within half a second
-  if (runtime_.pace != service::Pace::kRealtime) return runtime_.heartbeat.alive("detector");
-  return service::monotonic_ns() - detector_alive_ns_ < kDetectorSilentNs;
+  if (runtime_.pace != service::Pace::kRealtime) return runtime_.heartbeat.gone("detector");
+  return service::monotonic_ns() - detector_alive_ns_ >= kDetectorSilentNs;
+}
+
+/// At a pace that waits for its boxes the first frame waits until they will come.
+bool FilterService::detector_there() const {
+  return config_.detector != "on" || runtime_.pace == service::Pace::kRealtime || detector_ready_;
 }
 
 }  // namespace rtd::filter

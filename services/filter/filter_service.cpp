@@ -62,6 +62,7 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
     if (status.service != "detector") return;
     detector_alive_ns_ = status.state == msg::ServiceState::kFinished ? 0 : service::monotonic_ns();
     detector_masks_ = std::ranges::count(status.metrics, service::metric::kMasks, &msg::Metric::name) > 0;
+    if (msg::is_ready(status.state)) detector_ready_ = true;
   });
   if (!config_.imu.empty()) imu_.emplace(runtime.bus_options, inertial::MotionFeedTopics{config_.imu, "", "filter"});
   writer_ = runtime.bus.writer(bus::topics::kFeatures);
@@ -271,10 +272,10 @@ std::int64_t FilterService::wait_for_slam(std::uint64_t seq) {
     const bool answered = feedback_->wait_for(seq, std::min(left, kLookAtSlam));
     waited_ns = service::monotonic_ns() - since_ns;
     runtime_.heartbeat.tick();
-    const bool alive = runtime_.heartbeat.alive("slam");
-    const bool gone = slam_seen_ && !alive && waited_ns > kPatienceNs;
-    slam_seen_ = slam_seen_ || alive;
-    if (answered || gone) break;
+    const bool gone = runtime_.heartbeat.gone("slam");
+    const bool enough = slam_seen_ && gone && waited_ns > kPatienceNs;
+    slam_seen_ = slam_seen_ || !gone;
+    if (answered || enough) break;
   }
   return waited_ns;
 }
@@ -354,8 +355,8 @@ void FilterService::report_state() {
   if (published_ == 0) {
     const bool ready = frame_reader_.matched() > 0 && writer_.matched() > 0 && tracking_reader_.matched() > 0 &&
                        keyframe_reader_.matched() > 0;
-    runtime_.heartbeat.set_state(ready ? msg::ServiceState::kReady : msg::ServiceState::kStarting,
-                                 ready ? "" : "waiting for a camera and slam");
+    const char* const missing = !ready ? "waiting for a camera and slam" : detector_there() ? "" : "waits for a detector";
+    runtime_.heartbeat.set_state(*missing == '\0' ? msg::ServiceState::kReady : msg::ServiceState::kStarting, missing);
     return;
   }
   std::vector<std::string> remarks;

@@ -63,7 +63,7 @@ class FilterService {
   };
   using Prepared = concurrency::BoundedQueue<Work>;
 
-  static constexpr std::int64_t kPatienceNs = 1'500'000'000;  ///< before a silent heartbeat ends a wait
+  static constexpr std::int64_t kPatienceNs = 1'500'000'000;  ///< for the successor of a service that is gone
 
   void prepare_frames();
   std::optional<Work> next_frame();
@@ -76,7 +76,8 @@ class FilterService {
   bool accept(const Arrival& arrival);
   void publish_no_features(const msg::FrameView& frame, const std::string& cause);
   void forget_views(const msg::FrameView& frame, const char* cause);
-  bool detector_alive() const;
+  bool detector_gone() const;
+  bool detector_there() const;
   void follow_camera(std::uint64_t changes);
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
   void fill_next(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use);
@@ -121,6 +122,7 @@ class FilterService {
   std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
   bool detector_seen_ = false, detector_gone_ = false, slam_seen_ = false;
   std::atomic<bool> detector_masks_{false};                  ///< its heartbeat says that it sends masks
+  std::atomic<bool> detector_ready_{false};                  ///< its heartbeat said once that it is; after the masks
   std::atomic<std::int64_t> detector_alive_ns_{0};           ///< CLOCK_MONOTONIC of its last heartbeat, 0 = ended
   std::array<double, msg::kFilterStages> total_stage_ms_{};  ///< of all published frames
   service::RateLimit defect_log_{std::chrono::seconds(1)}, wait_log_{std::chrono::seconds(1)};

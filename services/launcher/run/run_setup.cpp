@@ -210,8 +210,9 @@ std::vector<std::string> detector_arguments(const RunSetup& setup) {
 std::vector<std::string> filter_arguments(const RunSetup& setup) {
   const service::MotionTopics& motion = setup.services.motion;
   std::vector<std::string> settings;
-  if (setup.model_path.empty() && !setup.replay.detections && !setup.remote_detector)
-    settings.emplace_back("filter.detector=off");
+  const bool boxes = !setup.model_path.empty() || setup.replay.detections || setup.remote_detector;
+  if (!boxes) settings.emplace_back("filter.detector=off");
+  if (boxes && setup.services.filter_detector == "auto") settings.emplace_back("filter.detector=on");
   if (!motion.imu.empty() && motion.imu_mount_in_base.empty()) {  // else how it is turned is known to slam alone
     settings.push_back("filter.imu.topic=" + motion.imu);
     if (!motion.imu_mount.empty()) settings.push_back("filter.imu.mount=" + motion.imu_mount);
@@ -259,6 +260,7 @@ void ServiceSettings::bind(service::ConfigBinder& binder) {
   using Part = service::ConfigBinder;
   binder.part_of_section("filter", [this](Part& filter) {
     service::bind_filter_mode(filter, filter_mode);
+    service::bind_filter_detector(filter, filter_detector);
     service::bind_person_masks(filter, person_masks);
   });
   binder.part_of_section("detector", [this](Part& detector) {

@@ -62,6 +62,7 @@ struct ServiceSettings {
   std::string model;   ///< ONNX file; empty: search
   std::string engine;  ///< of the detector
   service::MaskSettings masks;
+  std::string filter_detector = "auto";
   std::string person_masks = "off";  ///< whether the filter reads them
   service::MapFileConfig map;
   bool localize_only = false;

@@ -268,6 +268,31 @@ TEST_F(FilterServiceTest, continues_with_geometry_when_the_detector_ends_in_lock
   EXPECT_TRUE(wait_state(msg::ServiceState::kDegraded));
 }
 
+TEST_F(FilterServiceTest, waits_in_lockstep_for_a_detector_that_is_slow_not_gone) {
+  start(service::Pace::kLockstep, true);
+  detector_beats_.stop();  // as on a host that stands still
+  send_frame(0);
+  EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(2500))) << "judged without the boxes";
+  send_boxes(0, true);
+  ASSERT_TRUE(answers_.wait_count(1));
+  EXPECT_EQ(answers_.at(0)->detection_use, msg::DetectionUse::kExact);
+}
+
+TEST_F(FilterServiceTest, is_ready_in_lockstep_only_when_the_promised_detector_is) {
+  config_.detector = "on";
+  launch(service::Pace::kLockstep);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kStarting, "waits for a detector"));
+  say("detector", msg::ServiceState::kStarting);
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_EQ(states_.all().back()->state, msg::ServiceState::kStarting) << "it loads its network";
+  say("detector", msg::ServiceState::kReady);
+  EXPECT_TRUE(wait_state(msg::ServiceState::kReady));
+  send_frame(0);
+  EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(300))) << "judged without the boxes";
+  send_boxes(0, true);
+  EXPECT_TRUE(answers_.wait_count(1));
+}
+
 TEST_F(FilterServiceTest, does_not_wait_for_a_detector_that_is_switched_off) {
   config_.detector = "off";
   start(service::Pace::kLockstep, true);

@@ -240,6 +240,18 @@ TEST_F(SupervisedRunTest, what_an_earlier_run_left_is_not_taken_for_this_ones) {
   EXPECT_FALSE(fs::exists(scratch_ / "out/trajectory.txt"));
 }
 
+TEST_F(SupervisedRunTest, tells_the_filter_to_await_the_detector_unless_told_otherwise) {
+  std::vector<std::string> with_detector = arguments({"--detector", "remote", "--robot", "anna"});
+  with_detector.erase(with_detector.begin() + 7, with_detector.begin() + 9);
+  script("filter", std::string("echo \"$@\"; ") + kServe);
+  script("camera", "sleep 0.3");
+  rtd_.run(with_detector);
+  EXPECT_THAT(log("filter"), HasSubstr("--set filter.detector=on"));
+  with_detector.insert(with_detector.end(), {"--set", "filter.detector=off"});
+  rtd_.run(with_detector);
+  EXPECT_THAT(log("filter"), AllOf(HasSubstr("filter.detector=off"), Not(HasSubstr("filter.detector=on"))));
+}
+
 TEST_F(SupervisedRunTest, without_weights_it_says_so_once_and_runs_on_geometry) {
   setenv("RTD_MODEL_DIR", (scratch_ / "nowhere").c_str(), 1);
   setenv("XDG_CACHE_HOME", (scratch_ / "nowhere").c_str(), 1);

@@ -28,6 +28,13 @@ TEST(PeerHealth, silence_from_another_host_is_death) {
   EXPECT_EQ(judge({1500 * kNsPerMs, ProcessState::kUnknown}), PeerHealth::kDead);
 }
 
+TEST(PeerHealth, what_waits_for_a_slow_peer_waits_for_ten_seconds_but_not_for_a_gone_one) {
+  EXPECT_FALSE(surely_gone({9'000 * kNsPerMs, ProcessState::kRunning}));
+  EXPECT_FALSE(surely_gone({9'000 * kNsPerMs, ProcessState::kUnknown}));
+  EXPECT_TRUE(surely_gone({10'000 * kNsPerMs, ProcessState::kRunning}));
+  EXPECT_TRUE(surely_gone({350 * kNsPerMs, ProcessState::kGone}));
+}
+
 TEST(PeerHealth, the_state_of_a_process_is_read) {
   EXPECT_EQ(process_state(getpid()), ProcessState::kRunning);
   const pid_t child = fork();
