@@ -95,12 +95,13 @@ void MotionFeed::receive(Subscription<Sample>& subscription, const bus::RawSampl
   arrived_.notify_all();
 }
 
-void MotionFeed::await(std::int64_t stamp_ns, std::chrono::milliseconds most) {
+void MotionFeed::await(std::int64_t stamp_ns) {
+  constexpr std::chrono::seconds kMost{2};
   std::unique_lock lock(mutex_);
   const auto missing = [stamp_ns](const auto& subscription) {
     return !subscription.silent && subscription.counters.received > 0 && subscription.newest_ns < stamp_ns;
   };
-  if (arrived_.wait_for(lock, most, [&] { return !missing(imu_) && !missing(wheels_); })) return;
+  if (arrived_.wait_for(lock, kMost, [&] { return !missing(imu_) && !missing(wheels_); })) return;
   imu_.silent = imu_.silent || missing(imu_);
   wheels_.silent = wheels_.silent || missing(wheels_);
 }

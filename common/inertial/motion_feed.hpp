@@ -33,9 +33,9 @@ class MotionFeed {
   /// Throws BusError when the bus refuses.
   MotionFeed(const bus::BusOptions& options, const MotionFeedTopics& topics);
 
-  /// Waits until every topic that is published has a sample of this stamp or later, but no longer than `most`. Once it
-  /// has waited in vain, it waits no more until samples come again.
-  void await(std::int64_t stamp_ns, std::chrono::milliseconds most);
+  /// Waits until every topic that is published has a sample of this stamp or later, but no longer than two seconds: a
+  /// busy host delays samples by less. Once it has waited in vain, it waits no more until samples come again.
+  void await(std::int64_t stamp_ns);
   /// What has come since the last call, in order of arrival.
   std::deque<ImuSample> take_imu();
   std::deque<msg::Odometry> take_wheels();

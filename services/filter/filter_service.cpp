@@ -282,8 +282,7 @@ std::int64_t FilterService::wait_for_slam(std::uint64_t seq) {
 
 /// In realtime the filter goes by what has come; else the same samples belong to a frame, as far as they come in time.
 void FilterService::take_imu(std::int64_t stamp_ns) {
-  constexpr std::chrono::milliseconds kMax{250};
-  if (runtime_.pace != service::Pace::kRealtime) imu_->await(stamp_ns, kMax);
+  if (runtime_.pace != service::Pace::kRealtime) imu_->await(stamp_ns);
   for (const inertial::ImuSample& sample : imu_->take_imu()) filter_.add(sample);
 }
 

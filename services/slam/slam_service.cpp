@@ -180,8 +180,7 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
 
 /// In realtime slam goes by what has come; else the same samples always belong to a frame, as far as they come in time.
 void SlamService::take_motion(const msg::FeatureFrame& frame) {
-  constexpr std::chrono::milliseconds kMax{250};
-  if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns, kMax);
+  if (runtime_.pace != service::Pace::kRealtime) motion_->await(frame.stamp_ns);
   for (const inertial::ImuSample& sample : motion_->take_imu()) slam_.add(sample);
   for (const msg::Odometry& odometry : motion_->take_wheels()) slam_.add(to_sample(odometry));
 }
