@@ -105,6 +105,9 @@ class CallEndpoint {
   /// How many endpoints receive what this one sends, and how many send what it receives.
   virtual int matched_readers() const = 0;
   virtual int matched_writers() const = 0;
+  /// Server: whether the client of a request receives its reply already. Where the id does not name its reader: whether
+  /// there are as many readers as writers.
+  virtual bool reaches(const CallId&) const { return matched_readers() >= matched_writers(); }
 };
 
 /// A connection that services can be offered and called on.

@@ -51,14 +51,13 @@ class CallServer::State {
     while (const auto call = waiting_.pop()) {
       if (waiting_.closed()) return;
       const std::vector<std::byte> reply = services_[call->service].handler(call->cdr);
-      wait_for_client(*calls_[call->service]);
+      wait_for_client(*calls_[call->service], call->id);
       calls_[call->service]->reply(call->id, reply);
     }
   }
-  void wait_for_client(const CallEndpoint& calls) const {
+  void wait_for_client(const CallEndpoint& calls, const CallId& id) const {
     const auto end = std::chrono::steady_clock::now() + kClientPatience;
-    while (calls.matched_readers() < calls.matched_writers() && !waiting_.closed() &&
-           std::chrono::steady_clock::now() < end) {
+    while (!calls.reaches(id) && !waiting_.closed() && std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(2ms);
     }
   }

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -85,12 +86,24 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   bool write_loaned(void* slot) override;
   void discard_loan(void* slot) override;
   int matched() const override { return status_.matched(); }
+  bool matches(const rtps::GUID_t& reader) const {
+    const std::lock_guard lock(readers_mutex_);
+    return readers_.contains(reader);
+  }
   bool wait_acknowledged(int timeout_ms) override;
   rtps::GUID_t guid() const { return writer_->guid(); }
   WriterId id() const override { return to_writer_id(guid()); }
 
  private:
   void on_publication_matched(dds::DataWriter*, const dds::PublicationMatchedStatus& status) override {
+    {
+      const rtps::GUID_t reader = rtps::iHandle2GUID(status.last_subscription_handle);
+      const std::lock_guard lock(readers_mutex_);
+      if (status.current_count_change > 0)
+        readers_.insert(reader);
+      else
+        readers_.erase(reader);
+    }
     status_.report_matched(status.current_count);
   }
   void on_offered_deadline_missed(dds::DataWriter*, const dds::OfferedDeadlineMissedStatus&) override {
@@ -108,6 +121,8 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
   std::map<void*, std::shared_ptr<void>> loans_;
   bool lends_own_memory_ = false;  ///< of the data-sharing pool
   std::set<void*> vendor_loans_;
+  mutable std::mutex readers_mutex_;
+  std::set<rtps::GUID_t> readers_;  ///< that are matched
   dds::DataWriter* writer_ = nullptr;
   std::optional<NodeEndpoints::Entry> entry_;
 };

@@ -103,6 +103,11 @@ class FastddsCalls : public CallEndpoint {
   }
   int matched_readers() const override { return writer_.matched(); }
   int matched_writers() const override { return reader_.matched(); }
+  bool reaches(const CallId& id) const override {
+    const rtps::GUID_t client = to_identity(id).writer_guid();
+    const bool names_reader = !is_prefixed(id) && client.entityId.is_reader();
+    return names_reader ? writer_.matches(client) : CallEndpoint::reaches(id);
+  }
 
  private:
   bool write(std::span<const std::byte> cdr, rtps::WriteParams& params) {

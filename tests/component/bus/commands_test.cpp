@@ -98,6 +98,26 @@ TEST_P(Commands, are_answered_to_a_client_of_either_rmw) {
   EXPECT_EQ(answer.message, "got 'room'");
 }
 
+/// As `ros2 param get` in a script: a client appears while that before it has not quite gone.
+TEST_P(Commands, of_clients_in_quick_succession_are_all_answered) {
+  if (serving_vendor(std::get<0>(GetParam())) != "fastdds" || std::get<1>(GetParam()) != "fastdds")
+    GTEST_SKIP() << "only clients of Fast DDS name the reader of their answer";
+  const CommandServer server(*bus_, "slam/save_map", CommandKind::kText, echo);
+  const auto node = connect_raw(options_with("fastdds"));
+  int answered = 0;
+  constexpr int kClients = 200;
+  for (int i = 0; i < kClients; ++i) {
+    auto answer = std::make_shared<std::promise<void>>();
+    const auto client = node->create_calls(call_topics("slam/save_map", CommandKind::kText), CallRole::kClient,
+                                           [answer](const auto&, const auto&) { answer->set_value(); });
+    const auto is_available = [&] { return client->matched_readers() > 0 && client->matched_writers() > 0; };
+    for (int wait = 0; wait < 10'000 && !is_available(); ++wait) std::this_thread::sleep_for(1ms);
+    ASSERT_TRUE(client->request(encode_request(CommandKind::kText, {"room"})));
+    if (answer->get_future().wait_for(2s) == std::future_status::ready) ++answered;
+  }
+  EXPECT_EQ(answered, kClients);
+}
+
 TEST_P(Commands, are_listed_with_type_vendor_and_robot) {
   const CommandServer reset(*bus_, "slam/reset", CommandKind::kTrigger, echo);
   const auto annas = bus_->of_robot("anna");
