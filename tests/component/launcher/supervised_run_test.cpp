@@ -240,7 +240,7 @@ TEST_F(SupervisedRunTest, what_an_earlier_run_left_is_not_taken_for_this_ones) {
   EXPECT_FALSE(fs::exists(scratch_ / "out/trajectory.txt"));
 }
 
-TEST_F(SupervisedRunTest, tells_the_filter_to_await_the_detector_unless_told_otherwise) {
+TEST_F(SupervisedRunTest, has_the_filter_await_the_detector_unless_that_is_off) {
   std::vector<std::string> with_detector = arguments({"--detector", "remote", "--robot", "anna"});
   with_detector.erase(with_detector.begin() + 7, with_detector.begin() + 9);
   script("filter", std::string("echo \"$@\"; ") + kServe);
