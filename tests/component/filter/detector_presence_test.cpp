@@ -39,6 +39,7 @@ TEST_F(FilterServiceTest, continues_with_geometry_when_the_detector_ends_in_lock
 TEST_F(FilterServiceTest, waits_in_lockstep_for_a_detector_that_is_slow_not_gone) {
   start(service::Pace::kLockstep, true);
   detector_beats_.stop();  // as on a host that stands still
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   send_frame(0);
   EXPECT_FALSE(answers_.wait_count(1, std::chrono::milliseconds(2500))) << "judged without the boxes";
   send_boxes(0, true);
