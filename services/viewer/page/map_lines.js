@@ -66,8 +66,8 @@ function thin(pairs) {
 /** Segments between the entries whose keyframes have poses; gaps: some have none yet. colorOf(entry): r, g, b in 0..1. */
 export function trajectoryVertices(map, colorOf = () => [1, 1, 1]) {
   const { keyframes, positions, length } = map.trajectory;
-  const stride = Math.max(1, Math.ceil(length / kMaxSteps));
-  const out = { positions: new Float32Array(6 * length), slots: new Float32Array(2 * length), colors: new Float32Array(6 * length), gaps: false };
+  const stride = Math.max(1, Math.ceil(length / kMaxSteps)), most = 2 * Math.ceil(length / stride);   // vertices
+  const out = { positions: new Float32Array(3 * most), slots: new Float32Array(most), colors: new Float32Array(3 * most), gaps: false };
   let vertices = 0, before = -1;
   const add = (entry) => {
     out.slots[vertices] = map.posedSlot(keyframes[entry]);

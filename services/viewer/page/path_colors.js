@@ -25,7 +25,8 @@ function scaleOf({ values }, coloring) {
 
 /** entry -> [r, g, b], 0..1. */
 export function pathColor(map, coloring) {
-  if (coloring === "state") return (entry) => kStates[map.values.states[entry]] ?? kNone;
+  const { states } = map.values;
+  if (coloring === "state") return (entry) => kStates[states[entry]] ?? kNone;
   const { known, most } = scaleOf(map, coloring);
   if (!known) return () => kNone;
   return (entry) => (Number.isFinite(known[entry]) ? ramp(known[entry] / (most || 1)) : kNone);

@@ -79,7 +79,7 @@ function trajectoryOf(map) {
     const slot = map.posedSlot(keyframes[entry]);
     if (slot < 0) continue;
     const pose = map.pose(slot);
-    transform(pose, pose.subarray(4), positions.slice(3 * entry, 3 * entry + 3), out, out.length);
+    transform(pose, pose.subarray(4), positions.subarray(3 * entry, 3 * entry + 3), out, out.length);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 // Pure data; the scene asks for what changed since it last drew. Messages may come in any order and more than once.
 
 export const kPoseValues = 8;   // per slot: t_xyz, scale_m of its points (0: not drawable yet), q_xyzw
+const kFirstEntries = 256;
 export const kFirstSlots = 256; // doubled when full; the scene uses rows of this many slots as a texture
 
 export class MapState {
@@ -14,9 +15,10 @@ export class MapState {
     this.poses = new Float32Array(kFirstSlots * kPoseValues);
     this.slots = 0;
     this.loops = new Uint32Array(0);
-    this.trajectory = { keyframes: [], positions: [], length: 0 };
-    this.values = { states: [], times_s: [], sigmas_m: [], errors_m: [] };   // of its entries, as far as they came
-    this.truth = [];
+    this.way = { keyframes: new Column(Uint32Array), positions: new Column(Float32Array, 3) };
+    this.knownOfWay = { states: new Column(Uint8Array), times_s: new Column(Float32Array), sigmas_m: new Column(Float32Array),
+                        errors_m: new Column(Float32Array) };   // of its entries, as far as they came
+    this.truePositions = new Column(Float32Array, 3);
     this.dense = { parts: [] };      // [{start, positions, colors}]; the first points are spread over all
     this.moving = { parts: [] };
     this.plan = null;
@@ -31,6 +33,21 @@ export class MapState {
     const changes = this.changes;
     this.changes = new Changes();
     return changes;
+  }
+
+  /** Its entries: the keyframe each belongs to, and its place in the frame of that, m. */
+  get trajectory() {
+    return { keyframes: this.way.keyframes.numbers, positions: this.way.positions.numbers, length: this.way.keyframes.length };
+  }
+
+  /** Of the entries of the trajectory: states, times_s, sigmas_m, errors_m; NaN, and state 0: not known yet. */
+  get values() {
+    return Object.fromEntries(Object.entries(this.knownOfWay).map(([name, column]) => [name, column.numbers]));
+  }
+
+  /** Ground truth, three values a pose, m. */
+  get truth() {
+    return this.truePositions.numbers;
   }
 
   pose(slot) {
@@ -94,27 +111,21 @@ export class MapState {
   }
 
   setTrajectory({ start, keyframes, positions }) {
-    const own = this.trajectory;
-    if (start > own.length) return;  // its beginning was lost; the server sends it again
-    for (let i = 0; i < keyframes.length; ++i) {
-      own.keyframes[start + i] = keyframes[i];
-      for (let k = 0; k < 3; ++k) own.positions[3 * (start + i) + k] = positions[3 * i + k];
-    }
-    own.length = start === 0 ? keyframes.length : Math.max(own.length, start + keyframes.length);
+    const own = this.way;
+    if (start > own.keyframes.length) return;  // its beginning was lost; the server sends it again
+    own.keyframes.put(start, keyframes);
+    own.positions.put(start, positions);
     this.changes.trajectoryFrom = Math.min(this.changes.trajectoryFrom, start);
   }
 
   setTrajectoryValues({ start, ...columns }) {
-    for (const [name, values] of Object.entries(this.values)) {
-      for (let i = 0; i < columns.states.length; ++i) values[start + i] = columns[name][i];
-    }
+    for (const [name, column] of Object.entries(this.knownOfWay)) column.put(start, columns[name]);
     this.changes.trajectoryFrom = Math.min(this.changes.trajectoryFrom, start);
   }
 
   setTruth({ start, positions }) {
-    if (3 * start > this.truth.length) return;
-    if (start === 0) this.truth.length = 0;
-    for (let i = 0; i < positions.length; ++i) this.truth[3 * start + i] = positions[i];
+    if (start > this.truePositions.length) return;
+    this.truePositions.put(start, positions);
     this.changes.truth = true;
   }
 
@@ -167,6 +178,37 @@ export class MapState {
   #rescale(keyframe) {
     const drawable = keyframe.posed && keyframe.alive && keyframe.points;
     this.poses[keyframe.slot * kPoseValues + 3] = drawable ? keyframe.points.scale_m : 0;
+  }
+}
+
+/** Numbers of entries that only grow in number, `each` of an entry, in one array that doubles: half the memory of an Array. */
+class Column {
+  #numbers;
+
+  constructor(Type, each = 1) {
+    this.#numbers = new Type(kFirstEntries * each);
+    this.each = each;
+    this.length = 0;   // entries
+  }
+
+  /** Entries from `start` on; 0 begins again. What lies between the last one and `start` is not known. */
+  put(start, values) {
+    const end = start + values.length / this.each;
+    if (start === 0) this.length = 0;
+    if (end * this.each > this.#numbers.length) this.#grow(end);
+    if (start > this.length) this.#numbers.fill(NaN, this.length * this.each, start * this.each);   // 0 of whole numbers
+    this.#numbers.set(values, start * this.each);
+    this.length = Math.max(this.length, end);
+  }
+
+  get numbers() {
+    return this.#numbers.subarray(0, this.length * this.each);
+  }
+
+  #grow(entries) {
+    const larger = new this.#numbers.constructor(2 * entries * this.each);
+    larger.set(this.numbers);
+    this.#numbers = larger;
   }
 }
 

@@ -92,6 +92,20 @@ test("a part of a trajectory whose beginning is missing is not taken", () => {
   assert.equal(map.trajectory.length, 0);
 });
 
+test("an hour of poses keeps its numbers, outside of the heap of objects, and what has not come is not known", () => {
+  const map = mapWith(1), part = 1000, parts = 108;
+  for (let i = 0; i < parts; ++i) {
+    map.setTrajectory(decoded(encode.trajectory(part * i, Array.from({ length: part }, (_, k) => ({ keyframe: 1, p: [i, k, 0.5] })))));
+  }
+  map.setTrajectoryValues(decoded(encode.trajectoryValues(part, [[6, 2.5, 0.01, 0.02]])));
+  const { keyframes, positions, length } = map.trajectory, { states, errors_m } = map.values;
+  assert.deepEqual([length, keyframes.length, positions.length], [part * parts, part * parts, 3 * part * parts]);
+  assert.deepEqual([...positions.slice(0, 3), ...positions.slice(-3)], [0, 0, 0.5, parts - 1, part - 1, 0.5]);
+  assert.ok([keyframes, positions, states, errors_m].every(ArrayBuffer.isView));
+  assert.deepEqual([states.length, states[0], errors_m[0], states[part]], [part + 1, 0, NaN, 6]);
+  assert.ok(trajectoryVertices(map).slots.length <= 2 * 60_000);
+});
+
 test("start 0 begins trajectory, ground truth and dense cloud again", () => {
   const map = mapWith(1), entry = { keyframe: 1, p: [0, 0, 0] };
   map.setTrajectory(decoded(encode.trajectory(0, [entry, entry, entry])));
@@ -105,7 +119,7 @@ test("start 0 begins trajectory, ground truth and dense cloud again", () => {
   map.setDense(decoded(encode.densePoints(0, 2, [0, 0, 0], 1, [[1, 0, 0, 0, 0, 0]])));
   assert.deepEqual([map.dense.parts.length, map.dense.parts.includes(kept)], [2, true], "a renewed cloud comes part by part");
   map.setDense(decoded(encode.densePoints(0, 1, [0, 0, 0], 1, [[0, 0, 0, 0, 0, 0]])));
-  assert.deepEqual([map.trajectory.length, map.truth, map.dense.parts.length], [1, [3, 3, 3], 1]);
+  assert.deepEqual([map.trajectory.length, [...map.truth], map.dense.parts.length], [1, [3, 3, 3], 1]);
 });
 
 test("a quarter turn about y takes forward to the right", () => {
