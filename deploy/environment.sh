@@ -25,8 +25,14 @@ build_release() {
     return 1
   }
   local began=$SECONDS
-  cmake --build "$root/build/release" "$@" | show_progress
+  cmake --build "$root/build/release" --parallel "$(compilers_at_once)" "$@" | show_progress
   echo "$(basename "$0" .sh): built in $((SECONDS - began)) s"
+}
+
+# As many as there are cores, fewer where memory is short: each takes up to 1.3 GB.
+compilers_at_once() {
+  awk -v cores="$(nproc)" '/^MemAvailable/ { fit = int($2 / 1.3e6); print fit < 1 ? 1 : (fit < cores ? fit : cores) }' \
+    /proc/meminfo
 }
 
 # Passes on what ninja prints, but for its steps: of these it says how many are done and how long the rest will take, by

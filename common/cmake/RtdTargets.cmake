@@ -49,7 +49,7 @@ endif()
 # Several sources of a target in one compilation: headers are parsed once, a clean build takes less than half of the time.
 if(RTD_UNITY_BUILD)
   set(CMAKE_UNITY_BUILD ON)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 14)
   # Local types of one source look to g++ like types of a header once that source is included by another.
   target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
 endif()

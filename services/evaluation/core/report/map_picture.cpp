@@ -13,7 +13,7 @@ namespace {
 
 namespace palette = plot::palette;
 
-constexpr double kWidth = 1080, kLowest = 320, kHighest = 620;
+constexpr double kPictureWidth = 1080, kLowest = 320, kHighest = 620;
 
 /// From the 2 % to the 98 % quantile, and the path: a few far points must not shrink the room to a dot.
 plot::Range extent(const std::vector<Eigen::Vector3d>& landmarks_m, const std::vector<Eigen::Vector3d>& path_m,
@@ -64,9 +64,9 @@ std::string map_picture(const std::vector<Eigen::Vector3d>& landmarks_m, const T
   const int up = y.span() < z.span() ? 1 : 2;  // z is up in the map of a robot, y down in that of a camera
   const plot::Range& across = x;
   const plot::Range& along = up == 1 ? z : y;
-  const double height = std::clamp((kWidth - 90) * along.span() / across.span() + 76, kLowest, kHighest);
-  plot::Svg svg(kWidth, height, "Map from above");
-  plot::Chart chart = plot::Chart::equal_aspect(svg, {64, 30, kWidth - 90, height - 76}, across, along);
+  const double height = std::clamp((kPictureWidth - 90) * along.span() / across.span() + 76, kLowest, kHighest);
+  plot::Svg svg(kPictureWidth, height, "Map from above");
+  plot::Chart chart = plot::Chart::equal_aspect(svg, {64, 30, kPictureWidth - 90, height - 76}, across, along);
   chart.draw_axes({"x [m]", up == 1 ? "z [m]" : "y [m]"});
   const auto inside = [&](const Eigen::Vector3d& p) {
     const double b = p[3 - up];

@@ -11,13 +11,13 @@ namespace rtd::slam {
 namespace {
 
 constexpr std::size_t kKeyframesAtOnce = 500, kLandmarksAtOnce = 20'000;  // about 2 ms each
-constexpr int kMinShared = 50;  ///< landmarks in common that make an edge worth drawing
+constexpr int kMinDrawn = 50;  ///< landmarks in common that make an edge worth drawing
 
 std::vector<KeyframeId> edges_of(const Keyframe& keyframe) {
   std::vector<KeyframeId> older;
   for (const auto& [other, shared] : keyframe.covisible) {
     if (other > keyframe.id) break;
-    if (shared >= kMinShared || other == keyframe.parent) older.push_back(other);
+    if (shared >= kMinDrawn || other == keyframe.parent) older.push_back(other);
   }
   return older;
 }

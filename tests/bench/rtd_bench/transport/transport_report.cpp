@@ -37,20 +37,20 @@ nlohmann::json spread(const std::vector<double>& samples) {
 }
 
 nlohmann::json to_json(const TransportResult& result) {
-  nlohmann::json json{{"vendor", result.what.vendor},
-                      {"path", to_string(result.what.path)},
-                      {"message", to_string(result.what.payload)}};
+  nlohmann::json row{{"vendor", result.what.vendor},
+                     {"path", to_string(result.what.path)},
+                     {"message", to_string(result.what.payload)}};
   if (!result.failure.empty()) {
-    json["failure"] = result.failure;
-    return json;
+    row["failure"] = result.failure;
+    return row;
   }
-  json["bytes"] = result.publisher.bytes;
-  json["latency_us"] = spread(result.subscriber.latency_us);
-  json["memcpy_us"] = spread(result.publisher.memcpy_us);
-  json["cpu_percent"] = {{"publisher", result.publisher.cpu_percent}, {"subscriber", result.subscriber.cpu_percent}};
-  json["max_rate_hz"] = result.publisher.rate_hz;
-  json["repeated"] = result.publisher.repeated;
-  return json;
+  row["bytes"] = result.publisher.bytes;
+  row["latency_us"] = spread(result.subscriber.latency_us);
+  row["memcpy_us"] = spread(result.publisher.memcpy_us);
+  row["cpu_percent"] = {{"publisher", result.publisher.cpu_percent}, {"subscriber", result.subscriber.cpu_percent}};
+  row["max_rate_hz"] = result.publisher.rate_hz;
+  row["repeated"] = result.publisher.repeated;
+  return row;
 }
 
 }  // namespace
