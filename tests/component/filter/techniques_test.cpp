@@ -43,7 +43,8 @@ double removed_of_mover(std::initializer_list<bool Techniques::*> off) {
 
 std::vector<SceneObject> objects_in(const vision::RgbdImage& image, const FilterConfig& config) {
   const DepthGrid grid = test::make_sampler().sample(image);
-  return find_objects({{"person", 0.9F, 200, 100, 200, 320}}, MotionLevels{}, image.camera, grid,
+  const std::vector<ObjectBox> person{{{"person", 0.9F, 200, 100, 200, 320}}};
+  return find_objects(person, MotionLevels{}, image.camera, grid,
                       find_depth_clusters(grid, ClusterConfig{}), effective_config(config).masks);
 }
 
