@@ -120,7 +120,7 @@ int run_both(const DemoOptions& options, const std::string& source) {
   const std::string page = (fs::path(options.out_dir) / "demo.html").string();
   if (compare(options.out_dir, page) != 0) return service::kRunFailed;
   print_next_steps(options.out_dir, page, with.detector);
-  return with.code;
+  return off.code == service::kOk ? with.code : off.code;
 }
 
 }  // namespace

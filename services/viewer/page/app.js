@@ -30,7 +30,6 @@ import { parseHash } from "./share.js";
 import { hasEnded, situation } from "./waiting.js";
 
 const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
-const kLongestSceneStart_ms = 3000;   // the panels need no view
 const kFrugalImagePause = 2;   // times the pause between two drawings of the map
 
 class App {
@@ -70,13 +69,7 @@ class App {
     setInterval(() => this.updatePanelsInTime(), kPanelPeriod_ms);
     document.addEventListener("visibilitychange", () => this.settingsChanged());
     this.settingsChanged();
-    this.start();
-  }
-
-  /** A recording may wait for the connection: it is made once poses can be drawn. */
-  async start() {
-    await Promise.race([this.startScene(), new Promise((resolve) => setTimeout(resolve, kLongestSceneStart_ms))]);
-    this.connection.connect();
+    this.startScene();
   }
 
   get robot() {

@@ -32,6 +32,7 @@ export class Connection {
     this.opened = false;
     this.attempt = 0;
     setInterval(() => this.#watch(), kPing_ms);
+    this.connect();
   }
 
   /** Without the token: for people. */
@@ -43,7 +44,6 @@ export class Connection {
     return this.state === "closed" ? Math.max(0, Math.ceil((this.retryAt_ms - performance.now()) / 1000)) : 0;
   }
 
-  /** To be called once; it connects again by itself. */
   connect() {
     clearTimeout(this.timer);
     this.received_ms = performance.now();

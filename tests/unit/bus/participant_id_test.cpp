@@ -85,7 +85,7 @@ TEST(ParticipantOnTheBus, does_not_choose_its_port_while_another_process_does) {
   ASSERT_TRUE(other->locked());
   const auto joined =
       std::async(std::launch::async, [&] { const Participant participant(options, read_host_limits()); });
-  EXPECT_EQ(joined.wait_for(milliseconds(300)), std::future_status::timeout);
+  EXPECT_EQ(joined.wait_for(milliseconds(1500)), std::future_status::timeout);
   other.reset();
   joined.wait();
 }
