@@ -114,7 +114,7 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
   ParticipantsOfProcess& own = participants_of_process();
   const std::lock_guard lock(own.creating);
   // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
-  // receives nothing there. A join takes 0.1 s, but seconds where ten processes compete for a core.
+  // receives nothing there. On an overloaded host the joins of those before take long.
   const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(5));
   const WithoutServerOfEnvironment announced;
   constexpr int kAttempts = 5;

@@ -9,16 +9,17 @@ const kFirstEntries = 256;
 export const kFirstSlots = 256; // doubled when full; the scene uses rows of this many slots as a texture
 
 export class MapState {
+  #way = { keyframes: new Column(Uint32Array), positions: new Column(Float32Array, 3) };
+  #valuesOfWay = { states: new Column(Uint8Array), times_s: new Column(Float32Array), sigmas_m: new Column(Float32Array),
+                   errors_m: new Column(Float32Array) };   // of its entries, as far as they came
+  #truth = new Column(Float32Array, 3);
+
   constructor(id) {
     this.id = id;
     this.keyframes = new Map();      // id -> {slot, posed, alive, points, others}
     this.poses = new Float32Array(kFirstSlots * kPoseValues);
     this.slots = 0;
     this.loops = new Uint32Array(0);
-    this.way = { keyframes: new Column(Uint32Array), positions: new Column(Float32Array, 3) };
-    this.knownOfWay = { states: new Column(Uint8Array), times_s: new Column(Float32Array), sigmas_m: new Column(Float32Array),
-                        errors_m: new Column(Float32Array) };   // of its entries, as far as they came
-    this.truePositions = new Column(Float32Array, 3);
     this.dense = { parts: [] };      // [{start, positions, colors}]; the first points are spread over all
     this.moving = { parts: [] };
     this.plan = null;
@@ -37,17 +38,17 @@ export class MapState {
 
   /** Its entries: the keyframe each belongs to, and its place in the frame of that, m. */
   get trajectory() {
-    return { keyframes: this.way.keyframes.numbers, positions: this.way.positions.numbers, length: this.way.keyframes.length };
+    return { keyframes: this.#way.keyframes.numbers, positions: this.#way.positions.numbers, length: this.#way.keyframes.length };
   }
 
   /** Of the entries of the trajectory: states, times_s, sigmas_m, errors_m; NaN, and state 0: not known yet. */
   get values() {
-    return Object.fromEntries(Object.entries(this.knownOfWay).map(([name, column]) => [name, column.numbers]));
+    return Object.fromEntries(Object.entries(this.#valuesOfWay).map(([name, column]) => [name, column.numbers]));
   }
 
   /** Ground truth, three values a pose, m. */
   get truth() {
-    return this.truePositions.numbers;
+    return this.#truth.numbers;
   }
 
   pose(slot) {
@@ -111,7 +112,7 @@ export class MapState {
   }
 
   setTrajectory({ start, keyframes, positions }) {
-    const own = this.way;
+    const own = this.#way;
     if (start > own.keyframes.length) return;  // its beginning was lost; the server sends it again
     own.keyframes.put(start, keyframes);
     own.positions.put(start, positions);
@@ -119,13 +120,13 @@ export class MapState {
   }
 
   setTrajectoryValues({ start, ...columns }) {
-    for (const [name, column] of Object.entries(this.knownOfWay)) column.put(start, columns[name]);
+    for (const [name, column] of Object.entries(this.#valuesOfWay)) column.put(start, columns[name]);
     this.changes.trajectoryFrom = Math.min(this.changes.trajectoryFrom, start);
   }
 
   setTruth({ start, positions }) {
-    if (start > this.truePositions.length) return;
-    this.truePositions.put(start, positions);
+    if (start > this.#truth.length) return;
+    this.#truth.put(start, positions);
     this.changes.truth = true;
   }
 
@@ -156,9 +157,7 @@ export class MapState {
   }
 
   #grow() {
-    const larger = new Float32Array(2 * this.poses.length);
-    larger.set(this.poses);
-    this.poses = larger;
+    this.poses = enlarged(this.poses, 2 * this.poses.length);
   }
 
   #appear(keyframe) {
@@ -179,6 +178,13 @@ export class MapState {
     const drawable = keyframe.posed && keyframe.alive && keyframe.points;
     this.poses[keyframe.slot * kPoseValues + 3] = drawable ? keyframe.points.scale_m : 0;
   }
+}
+
+/** A longer typed array that begins with the same numbers. */
+function enlarged(numbers, length) {
+  const larger = new numbers.constructor(length);
+  larger.set(numbers);
+  return larger;
 }
 
 /** Numbers of entries that only grow in number, `each` of an entry, in one array that doubles: half the memory of an Array. */
@@ -206,9 +212,7 @@ class Column {
   }
 
   #grow(entries) {
-    const larger = new this.#numbers.constructor(2 * entries * this.each);
-    larger.set(this.numbers);
-    this.#numbers = larger;
+    this.#numbers = enlarged(this.numbers, 2 * entries * this.each);
   }
 }
 
