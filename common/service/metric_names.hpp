@@ -133,6 +133,7 @@ inline constexpr char kLost[] = "lost";
 
 // Viewer
 inline constexpr char kClients[] = "clients";
+inline constexpr char kClientsReady[] = "clients_ready";  ///< that show what comes: a page needs seconds to load
 inline constexpr char kClientsTooSlow[] = "clients_too_slow";
 inline constexpr char kSentMb[] = "sent_mb";
 inline constexpr char kRequests[] = "requests";

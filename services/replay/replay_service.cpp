@@ -259,7 +259,7 @@ bool ReplayService::wait_for_services() {
 
 bool ReplayService::wait_for_page() {
   const auto is_open = [this] {
-    return runtime_.heartbeat.metric_on_this_host("viewer", service::metric::kClients).value_or(0) > 0;
+    return runtime_.heartbeat.metric_on_this_host("viewer", service::metric::kClientsReady).value_or(0) > 0;
   };
   if (!config_.wait_page || is_open()) return true;
   SPDLOG_INFO("event=waits_for_page fix=\"open the viewer's address, or --viewer=now\"");

@@ -286,6 +286,8 @@ void ViewerService::report() {
   runtime_.heartbeat.set_state(counts.clients > 0 ? msg::ServiceState::kRunning : msg::ServiceState::kReady,
                                fmt::format("port {}, {} clients", server_->port(), counts.clients));
   runtime_.heartbeat.set_metric(service::metric::kClients, clients);
+  const std::size_t ready = page_.ready() + foxglove_.clients();
+  runtime_.heartbeat.set_metric(service::metric::kClientsReady, static_cast<double>(ready));
   runtime_.heartbeat.set_metric(service::metric::kSentMb, 1e-6 * static_cast<double>(counts.sent_bytes));
   runtime_.heartbeat.set_metric(service::metric::kRequests, static_cast<double>(counts.requests));
   runtime_.heartbeat.set_metric(service::metric::kRequestsRefused, static_cast<double>(counts.refused));

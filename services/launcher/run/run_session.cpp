@@ -175,7 +175,7 @@ bool RunSession::misses_no_result(milliseconds time) const {
 /// A recording is not played before someone can see it, unless the viewer is gone.
 bool RunSession::waits_for_page(const ServicePlan& source) {
   if (!setup_.viewer_use.waits || source.role != ServiceRole::kSource || page_was_open_) return false;
-  page_was_open_ = collector_.metric_of("viewer", service::metric::kClients).value_or(0) > 0;
+  page_was_open_ = collector_.metric_of("viewer", service::metric::kClientsReady).value_or(0) > 0;
   if (page_was_open_ || !supervisor_.runs("viewer")) return false;
   if (!viewer_line_.empty() && !std::exchange(wait_shown_, true))
     terminal_.warn("rtd: waits until the page is open; --viewer=now starts at once");

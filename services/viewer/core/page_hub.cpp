@@ -35,4 +35,8 @@ std::optional<PageOptions> PageHub::options(std::uint8_t robot) const {
   return all;
 }
 
+std::size_t PageHub::ready() const {
+  return static_cast<std::size_t>(std::ranges::count_if(sessions_, &PageSession::ready));
+}
+
 }  // namespace rtd::viewer

@@ -68,6 +68,8 @@ class PageHub {
   /// What any page wants of a robot; nothing without pages.
   std::optional<PageOptions> options(std::uint8_t robot) const;
   std::size_t clients() const { return sessions_.size(); }
+  /// Pages that say that they can draw.
+  std::size_t ready() const;
 
  private:
   friend class PageSession;

@@ -100,6 +100,7 @@ void PageSession::on_text(std::string_view message_text) {
                 flag(message, "dense", options_.dense),       flag(message, "people", options_.people),
                 flag(message, "moving", options_.moving),     flag(message, "plan", options_.plan),
                 flag(message, "depth", options_.depth)};
+    ready_ = flag(message, "ready", ready_);
     const auto robot = message.find("robot");
     if (robot != message.end() && robot->is_number_unsigned()) watched_ = robot->get<std::uint64_t>();
   } else if (op == "call") {

@@ -46,6 +46,8 @@ class PageSession : public Session {
   bool overflowed() const override { return outbox_.overflowed(); }
   /// What the page wants of a robot.
   PageOptions options(std::uint8_t robot) const;
+  /// The page can draw.
+  bool ready() const { return ready_; }
 
  private:
   /// What the page has of one robot.
@@ -85,6 +87,7 @@ class PageSession : public Session {
   const bool may_control_;
   Outbox outbox_;
   PageOptions options_;
+  bool ready_ = false;
   std::optional<std::uint64_t> watched_;      ///< whose images the page shows; none: those of all robots
   std::map<std::size_t, Sent> sent_;          ///< by the robot's index
   std::size_t robots_sent_ = 0, served_ = 0;  ///< served_: whose message was the last one

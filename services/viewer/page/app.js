@@ -97,6 +97,7 @@ class App {
       this.sceneFailed = true;
     }
     document.documentElement.classList.toggle("plain", this.scene?.software ?? true);
+    this.sendOptions();
   }
 
   /** After a connection is opened the server sends everything again. */
@@ -223,13 +224,14 @@ class App {
     this.updatePanels();
   }
 
-  /** What is not shown is not sent. */
+  /** What is not shown is not sent. A recording may wait until the page is ready. */
   sendOptions() {
     const { layers, overlays } = this.settings;
     const image = this.selected !== undefined && this.frame.shows("image") && !document.hidden;
     const options = { op: "options", image, mask: image && overlays.mask, people: image && overlays.people,
                       features: image && overlays.features, depth: image && overlays.depth,
-                      points: layers.points, dense: layers.dense, moving: layers.moving, plan: layers.plan, robot: this.selected };
+                      points: layers.points, dense: layers.dense, moving: layers.moving, plan: layers.plan, robot: this.selected,
+                      ready: this.scene !== undefined || this.sceneFailed === true };
     const text = JSON.stringify(options);
     if (text !== this.options && this.connection.send(options)) this.options = text;
   }

@@ -19,6 +19,7 @@ const answerOf = (name) => waitFor(page, (selector) => /good|bad/.test(document.
 test("the map appears with every point and every keyframe", async () => {
   await open({ points: 5000, keyframes: 60 });
   await waitForMap(page, 5000);
+  assert.deepEqual([server.wanted[0].ready, server.wanted.at(-1).ready], [false, true], "a recording waits until the page can draw");
   const counts = await page.evaluate(() => rtdViewer.counts);
   assert.deepEqual(counts, { points: server.robots[0].room.pointCount, pointsTotal: 5000, keyframes: 60 });
   assert.equal(await textOf(page, "#state-text"), "Tracking");
@@ -154,6 +155,7 @@ test("without WebGL the panels work and a line says why there is no map", async 
     take(await openPage(plain, server.address));
     await waitFor(page, () => !document.getElementById("no-scene").hidden && rtdViewer.counts.points === 5000);
     assert.match(await textOf(page, "#no-scene"), /WebGL/);
+    await until(() => server.wanted.at(-1).ready);
     await waitFor(page, () => rtdViewer.poseAgeP50 > 0 && !document.getElementById("image").hidden);
     page.complaints = page.complaints.filter((line) => !/WebGL/.test(line));
   } finally {

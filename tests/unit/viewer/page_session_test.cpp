@@ -122,6 +122,20 @@ TEST_F(PageSessionTest, a_page_gets_the_depth_when_it_asks_for_it_and_shows_imag
   EXPECT_FALSE(hub.options(0)->depth) << "its panel is closed";
 }
 
+TEST_F(PageSessionTest, a_page_is_ready_once_it_says_so_and_until_it_is_closed) {
+  auto page = hub.open();
+  const auto other = hub.open();
+  EXPECT_EQ(hub.ready(), 0U) << "connected, but it loads";
+  page->on_text(R"({"op":"options","ready":false})");
+  EXPECT_EQ(hub.ready(), 0U);
+  page->on_text(R"({"op":"options","ready":true})");
+  EXPECT_EQ(hub.ready(), 1U);
+  page->on_text(R"({"op":"options","image":false})");
+  EXPECT_EQ(hub.ready(), 1U);
+  page.reset();
+  EXPECT_EQ(hub.ready(), 0U);
+}
+
 TEST_F(PageSessionTest, a_closed_loop_sends_poses_and_no_points) {
   RobotMirror& robot = *hub.robot("");
   robot.map().add(map_of(100, 200));
