@@ -25,11 +25,6 @@ constexpr std::size_t kRealtimeQueue = 4, kEveryFrameQueue = 8;
 constexpr std::uint64_t kFramesUntilSilent = 30;  // a driver may be found after the first frames
 constexpr std::int64_t kDiagnosticsPeriodNs = 1'000'000'000;
 
-/// Only in realtime do frames come at a rate that one can rely on; else the slowest stage of a busy host sets it.
-double input_gone_after_s(service::Pace pace) {
-  return pace == service::Pace::kRealtime ? 0.5 : 5.0;
-}
-
 MappingMode mapping_mode(service::Pace pace) {
   return pace == service::Pace::kLockstep ? MappingMode::kSynchronous : MappingMode::kThreaded;
 }
@@ -163,6 +158,9 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   if (answer_again(frame)) return;
   if (motion_) take_motion(frame);
   const msg::TrackingState previous = last_result_.state;
+  if (counters_.frames > 0 && frame.seq > last_result_.seq)
+    frame_period_s_ = 1e-9 * static_cast<double>(frame.stamp_ns - last_result_.stamp_ns) /
+                      static_cast<double>(frame.seq - last_result_.seq);
   const std::int64_t started_ns = service::monotonic_ns();
   const SlamOutput output = slam_.process(frame);
   last_result_ = make_result(output.result);
@@ -324,16 +322,22 @@ void SlamService::log_gravity(const UpFound& up) const {
   }
 }
 
+/// Only in realtime do frames come at a rate that one can rely on; else the slowest stage of a busy host sets it.
+double SlamService::input_gone_after_s() const {
+  constexpr double kPeriods = 3, kLeast_s = 0.5, kMost_s = 5;
+  return runtime_.pace == service::Pace::kRealtime ? std::clamp(kPeriods * frame_period_s_, kLeast_s, kMost_s) : kMost_s;
+}
+
 /// Says so when features stop coming although the source has not ended.
 void SlamService::watch_input(bool arrived) {
   const std::int64_t now_ns = service::monotonic_ns();
   if (arrived) last_arrival_ns_ = now_ns;
   const bool gone = counters_.frames > 0 && !source_ended_ &&
-                    static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 > input_gone_after_s(runtime_.pace);
+                    static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 > input_gone_after_s();
   if (gone != input_gone_) {
     if (gone) {
       SPDLOG_WARN("event=input_gone last_frame={} cause=\"no features for {:g} s\" keyframes={}", last_result_.seq,
-                  input_gone_after_s(runtime_.pace), last_result_.keyframes);
+                  input_gone_after_s(), last_result_.keyframes);
     } else if (arrived) {
       SPDLOG_INFO("event=input_back frame={}", last_result_.seq);
     }
@@ -347,8 +351,7 @@ void SlamService::watch_input(bool arrived) {
 /// Why the service does less than it should; empty when it does not.
 std::string SlamService::trouble() const {
   if (input_gone_) {
-    return fmt::format("no features for {:g} s: camera or filter gone, the map is kept",
-                       input_gone_after_s(runtime_.pace));
+    return fmt::format("no features for {:g} s: camera or filter gone, the map is kept", input_gone_after_s());
   }
   if (std::string unsaved = map_keeper_.trouble(); !unsaved.empty()) return unsaved;
   if (!refused_map_.empty()) return refused_map_;

@@ -58,6 +58,7 @@ class SlamService {
   void count(const SlamOutput& output);
   void log(const SlamOutput& output, msg::TrackingState previous);
   void log_gravity(const UpFound& up) const;
+  double input_gone_after_s() const;
   void watch_input(bool arrived);
   void report_state();
   std::string trouble() const;
@@ -87,6 +88,7 @@ class SlamService {
   std::string last_problem_;
   std::int64_t last_arrival_ns_ = 0, last_diagnostics_ns_ = 0;
   bool readout_logged_ = false;
+  double frame_period_s_ = 0;  ///< of the camera, from the stamps of the last two frames
   bool input_gone_ = false;
   std::uint64_t dropped_logged_ = 0;
   service::RateLimit problem_log_{std::chrono::seconds(1)}, invalid_log_{std::chrono::seconds(1)},

@@ -289,6 +289,17 @@ TEST_F(SlamServiceTest, reports_that_the_camera_is_gone_and_keeps_its_map) {
   EXPECT_TRUE(wait_state(msg::ServiceState::kRunning));
 }
 
+TEST_F(SlamServiceTest, a_slow_camera_is_not_gone_between_two_of_its_frames) {
+  start(service::Pace::kRealtime);
+  for (std::uint64_t seq = 0; seq < 3; ++seq) {
+    auto frame = world_.view(seq, FeatureWorld::T_world_camera(seq));
+    frame->stamp_ns = static_cast<std::int64_t>(seq) * 500'000'000;  // at 2 Hz
+    ASSERT_TRUE(features_.write(*frame));
+    ASSERT_TRUE(results_.wait_count(seq + 1));
+  }
+  ASSERT_TRUE(wait_state(msg::ServiceState::kDegraded, "no features for 1.5 s"));
+}
+
 TEST_F(SlamServiceTest, is_not_troubled_by_the_end_of_the_source) {
   start(service::Pace::kRealtime);
   step(0);
