@@ -3,11 +3,18 @@
 #include "common/bus/fastdds/c_library.hpp"
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <pthread.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <string>
+#include <string_view>
 
 namespace rtd::bus::fastdds {
 
@@ -53,9 +60,55 @@ void be_patient() {
   } while (seconds_since(CLOCK_MONOTONIC, since) > kStoodStill_s);
 }
 
+/// Whoever holds such a file listens at a port, or owns a segment.
+bool is_lock_file(std::string_view path) {
+  return path.starts_with("/dev/shm/fast") && (path.ends_with("_el") || path.ends_with("_sl"));
+}
+
+/// The path by which it was opened, also when that has been removed.
+std::string path_of(int file) {
+  constexpr std::string_view kRemoved = " (deleted)";
+  char link[32], path[256];
+  std::snprintf(link, sizeof(link), "/proc/self/fd/%d", file);
+  const ssize_t length = readlink(link, path, sizeof(path));
+  const std::string_view found(path, length > 0 ? static_cast<std::size_t>(length) : 0);
+  return std::string(found.ends_with(kRemoved) ? found.substr(0, found.size() - kRemoved.size()) : found);
+}
+
+bool has_name(int file) {
+  struct stat status {};
+  return fstat(file, &status) == 0 && status.st_nlink > 0;
+}
+
 }  // namespace
 
 extern "C" {
+
+int flock(int file, int operation) noexcept {
+  static const auto original = next<int(int, int)>("flock");
+  const std::string path = path_of(file);
+  if (!is_lock_file(path)) return original(file, operation);
+  if ((operation & LOCK_UN) != 0) {
+    if (original(file, LOCK_EX | LOCK_NB) == 0 && has_name(file)) unlink(path.c_str());
+    return original(file, operation);
+  }
+  const int result = original(file, operation);
+  if (result != 0 || has_name(file)) return result;
+  original(file, LOCK_UN);
+  errno = EWOULDBLOCK;
+  return -1;
+}
+
+/// Fast DDS calls it for a lock file that it has unlocked: removes it unless another has locked it since.
+int remove(const char* path) noexcept {
+  static const auto original = next<int(const char*)>("remove");
+  if (!is_lock_file(path)) return original(path);
+  const int file = open(path, O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) flock(file, LOCK_UN);
+  close(file);
+  return 0;
+}
 
 int pthread_mutexattr_setpshared(pthread_mutexattr_t* attributes, int shared) noexcept {
   static const auto original = next<int(pthread_mutexattr_t*, int)>("pthread_mutexattr_setpshared");

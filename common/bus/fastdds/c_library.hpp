@@ -12,6 +12,11 @@ namespace rtd::bus::fastdds {
 /// with it its discovery, and a reader of frames may throw or wait forever. Only the state that a lock of Fast DDS
 /// guards for some microseconds may then be unfinished: an entry of a queue or a counter of waiting threads.
 ///
+/// Lock files: the last holder of a file removes it before unlocking it, and none locks a file without a name. Fast DDS
+/// removes it after unlocking it, by name, and with it the lock that another process, or another thread of the same
+/// one, has taken meanwhile. Others then take the port of a process that lives for one that was left, put another in
+/// its place, and it receives nothing more: after a process had stood still, one time in fifty.
+///
 /// After a standstill: Fast DDS's timers, and nothing else, wait a little longer when they went off seconds late: the
 /// process had been stopped. Otherwise every lease that ran out meanwhile ends at once, and Fast DDS 2.9 loses a
 /// participant for good whose next announcement arrives in the microseconds in which it is forgotten. When all

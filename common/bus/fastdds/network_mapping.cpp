@@ -169,7 +169,7 @@ const ParticipantId& server_id() {
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
                  dds::DomainParticipantQos& qos) {
   qos.transport().use_builtin_transports = false;
-  if (options.shared_memory) qos.transport().user_transports.push_back(shared_memory_transport(options));
+  if (options.shared_memory) qos.transport().user_transports.push_back(as_received(shared_memory_transport(options)));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(
       udp_transport(options, limits), datagram_bytes(options), options.on_problem));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.

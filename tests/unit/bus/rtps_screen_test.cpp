@@ -61,6 +61,18 @@ TEST(RtpsScreenTest, refuses_lengths_that_lie) {
   EXPECT_FALSE(passes(message({0x09, 1, 8}))) << "half a header";
 }
 
+TEST(RtpsScreenTest, leaves_out_the_last_submessage_whatever_it_is) {
+  const auto without = [](const std::vector<std::uint8_t>& whole, std::size_t bytes) {
+    return without_last(std::as_bytes(std::span(whole)), bytes).size();
+  };
+  const auto before = message(kInfoTimestamp);
+  EXPECT_EQ(without(join(before, statistics()), 54), before.size());
+  EXPECT_EQ(without(join(before, std::vector<std::uint8_t>(60, 0x6d)), 60), before.size()) << "it was never written";
+  EXPECT_EQ(without(before, 12), before.size()) << "there is only one";
+  EXPECT_EQ(without(join(before, kInfoTimestamp), 10), before.size() + 12) << "none of this size is at the end";
+  EXPECT_EQ(without({}, 60), 0U);
+}
+
 TEST(RtpsScreenTest, refuses_a_vendors_submessage_before_the_end) {
   EXPECT_FALSE(passes(message(join(statistics(), kInfoTimestamp))));
 }

@@ -10,6 +10,8 @@
 namespace rtd::bus {
 namespace {
 
+constexpr std::size_t kMessageHeader = 20;
+
 /// Offsets are bytes of the body; they have to lie in it.
 struct Submessage {
   enum Kind : std::uint8_t {
@@ -144,12 +146,20 @@ class NumberReader {
 
 }  // namespace
 
+std::span<const std::byte> without_last(std::span<const std::byte> message, std::size_t bytes) {
+  if (message.size() <= kMessageHeader + bytes) return message;
+  std::span<const std::byte> rest = message.subspan(kMessageHeader);
+  while (rest.size() > bytes)
+    if (!take(rest)) return message;
+  return rest.size() == bytes ? message.first(message.size() - bytes) : message;
+}
+
 RtpsMessage read_rtps_message(std::span<const std::byte> datagram) {
-  constexpr std::size_t kHeader = 20, kPrefixInHeader = 8;
+  constexpr std::size_t kPrefixInHeader = 8;
   RtpsMessage message;
-  if (datagram.size() < kHeader || std::memcmp(datagram.data(), "RTPS\2", 5) != 0) return message;
+  if (datagram.size() < kMessageHeader || std::memcmp(datagram.data(), "RTPS\2", 5) != 0) return message;
   NumberReader numbers(datagram.subspan(kPrefixInHeader), message.numbers);
-  for (auto rest = datagram.subspan(kHeader); !rest.empty();) {
+  for (auto rest = datagram.subspan(kMessageHeader); !rest.empty();) {
     const std::optional<Submessage> submessage = take(rest);
     if (!submessage) return message;
     if (submessage->kind == Submessage::kDataFrag && !has_whole_fragments(*submessage)) message.whole_fragments = false;

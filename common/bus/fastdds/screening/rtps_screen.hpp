@@ -36,6 +36,9 @@ struct RtpsMessage {
 /// Reads up to the first submessage that breaks the frame.
 RtpsMessage read_rtps_message(std::span<const std::byte> datagram);
 
+/// A message without its last submessage when that has so many bytes, with its header, whatever it is; else all of it.
+std::span<const std::byte> without_last(std::span<const std::byte> message, std::size_t bytes);
+
 /// Whether a writer may have come to a sequence number: none is far beyond all that it has named so far, unless it goes
 /// on naming such numbers and no others, as one does that has been writing for days before it is first matched.
 class SequenceGuard {

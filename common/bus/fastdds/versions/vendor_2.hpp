@@ -25,6 +25,7 @@
 #include <fastdds/dds/subscriber/qos/DataReaderQos.hpp>
 #include <fastdds/dds/topic/TopicDataType.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,6 +154,12 @@ class PassingTransport : public transports::ChainingTransport {
   /// By which address to send to one that the transport behind does not reach.
   virtual bool reach(const rtps::Locator_t& /*remote*/, rtps::Locator_t& /*result*/) const { return false; }
 };
+
+/// The transport as it is: what it receives needs no change.
+inline std::shared_ptr<transports::TransportDescriptorInterface> as_received(
+    std::shared_ptr<transports::SharedMemTransportDescriptor> transport) {
+  return transport;
+}
 
 /// Heartbeats of a writer, and how soon it repairs.
 inline void set_timing(dds::DataWriterQos& qos, const Duration_t& first, const Duration_t& period,

@@ -19,11 +19,14 @@
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
+#include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/fastdds/versions/discovery_events.hpp"
 #include "common/bus/fastdds/versions/type_functions.hpp"
 
@@ -147,6 +150,45 @@ class PassingTransport : public transports::ChainingTransport {
  private:
   std::set<rtps::Locator_t> open_;
 };
+
+class SharedMemoryDescriptor : public transports::ChainingTransportDescriptor {
+ public:
+  using ChainingTransportDescriptor::ChainingTransportDescriptor;
+  transports::TransportInterface* create_transport() const override;
+};
+
+/// Each message of Fast DDS 3.1 ends with a submessage of statistics, of which nothing is written in shared memory:
+/// there are bytes of older messages, which its receivers read as submessages. Once in a while it is a heartbeat of
+/// samples that do not exist, and a reader that has lost one waits for it from then on and receives nothing more.
+class SharedMemoryTransport : public transports::ChainingTransport {
+ public:
+  explicit SharedMemoryTransport(const SharedMemoryDescriptor& descriptor)
+      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+  transports::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+  bool send(rtps::SenderResource* sender, const std::vector<transports::NetworkBuffer>& buffers, std::uint32_t bytes,
+            rtps::LocatorsIterator* begin, rtps::LocatorsIterator* end,
+            const std::chrono::steady_clock::time_point& timeout) override {
+    return sender->send(buffers, bytes, begin, end, timeout);
+  }
+  void receive(transports::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
+               const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
+    constexpr std::size_t kStatistics = 60;
+    const auto message = without_last(std::as_bytes(std::span(data, size)), kStatistics);
+    next->OnDataReceived(data, static_cast<std::uint32_t>(message.size()), local, remote);
+  }
+
+ private:
+  SharedMemoryDescriptor descriptor_;
+};
+
+inline transports::TransportInterface* SharedMemoryDescriptor::create_transport() const {
+  return new SharedMemoryTransport(*this);
+}
+
+inline std::shared_ptr<transports::TransportDescriptorInterface> as_received(
+    std::shared_ptr<transports::SharedMemTransportDescriptor> transport) {
+  return std::make_shared<SharedMemoryDescriptor>(std::move(transport));
+}
 
 /// Heartbeats of a writer, and how soon it repairs.
 inline void set_timing(dds::DataWriterQos& qos, const Duration_t& first, const Duration_t& period,

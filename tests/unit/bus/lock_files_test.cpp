@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "common/bus/fastdds/c_library.hpp"
+
+namespace rtd::bus::fastdds {
+namespace {
+
+/// Uses a file as Fast DDS uses those of its ports.
+class LockFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    GTEST_SKIP() << "not with a sanitizer, with which these functions are those of the C library";
+#endif
+    link_c_library_functions();
+    unlink(name_.c_str());
+  }
+  void TearDown() override {
+    unlink(name_.c_str());
+  }
+
+  int open_or_create() const {
+    const int file = open(name_.c_str(), O_RDONLY | O_CLOEXEC);
+    return file >= 0 ? file : open(name_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0600);
+  }
+  void give_back(int file) const {
+    flock(file, LOCK_UN | LOCK_NB);
+    close(file);
+    std::remove(name_.c_str());
+  }
+  bool exists() const {
+    return access(name_.c_str(), F_OK) == 0;
+  }
+
+  const std::string name_ = "/dev/shm/fast_test_" + std::to_string(getpid()) + "_el", new_ = name_ + ".new";
+};
+
+TEST_F(LockFiles, one_that_is_given_back_is_not_taken_for_one_that_was_left) {
+  std::atomic<bool> ended{false};
+  std::thread owner([&] {
+    for (int round = 0; round < 20'000; ++round) {
+      const int file = open(new_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0600);
+      flock(file, LOCK_EX | LOCK_NB);
+      std::rename(new_.c_str(), name_.c_str());  // no other sees it unlocked
+      give_back(file);
+    }
+    ended = true;
+  });
+  int taken_for_left = 0;
+  while (!ended) {
+    const int file = open(name_.c_str(), O_RDONLY | O_CLOEXEC);
+    if (file < 0) continue;
+    if (flock(file, LOCK_EX | LOCK_NB) == 0) {
+      ++taken_for_left;
+      give_back(file);
+    } else {
+      close(file);
+    }
+  }
+  owner.join();
+  EXPECT_EQ(taken_for_left, 0);
+}
+
+TEST_F(LockFiles, one_whose_owner_ended_without_giving_it_back_is_free_and_there) {
+  const pid_t child = fork();
+  if (child == 0) {
+    flock(open_or_create(), LOCK_EX | LOCK_NB);
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  ASSERT_TRUE(exists());
+  const int file = open_or_create();
+  EXPECT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
+  give_back(file);
+  EXPECT_FALSE(exists());
+}
+
+TEST_F(LockFiles, one_that_is_held_stays) {
+  const int file = open_or_create();
+  ASSERT_EQ(flock(file, LOCK_SH | LOCK_NB), 0);
+  EXPECT_EQ(std::remove(name_.c_str()), 0);
+  const int other = open_or_create();
+  EXPECT_EQ(flock(other, LOCK_SH | LOCK_NB), 0);
+  give_back(file);
+  EXPECT_TRUE(exists()) << "another holds it, too";
+  give_back(other);
+  EXPECT_FALSE(exists());
+}
+
+}  // namespace
+}  // namespace rtd::bus::fastdds
