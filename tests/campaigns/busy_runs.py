@@ -100,7 +100,7 @@ async def receive_as_page():
         try:
             async with websockets.connect(f"ws://127.0.0.1:{PORT}/live", subprotocols=["rtd.viewer.v1"], max_size=None,
                                           compression=None) as page:
-                await page.send(json.dumps({"op": "options", "dense": True}))
+                await page.send(json.dumps({"op": "options", "dense": True, "ready": True}))
                 async for _ in page:
                     pass
             return  # the viewer has ended
