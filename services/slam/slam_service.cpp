@@ -325,7 +325,8 @@ void SlamService::log_gravity(const UpFound& up) const {
 /// Only in realtime do frames come at a rate that one can rely on; else the slowest stage of a busy host sets it.
 double SlamService::input_gone_after_s() const {
   constexpr double kPeriods = 3, kLeast_s = 0.5, kMost_s = 5;
-  return runtime_.pace == service::Pace::kRealtime ? std::clamp(kPeriods * frame_period_s_, kLeast_s, kMost_s) : kMost_s;
+  const bool steady = runtime_.pace == service::Pace::kRealtime;
+  return steady ? std::clamp(kPeriods * frame_period_s_, kLeast_s, kMost_s) : kMost_s;
 }
 
 /// Says so when features stop coming although the source has not ended.
@@ -335,12 +336,11 @@ void SlamService::watch_input(bool arrived) {
   const bool gone = counters_.frames > 0 && !source_ended_ &&
                     static_cast<double>(now_ns - last_arrival_ns_) * 1e-9 > input_gone_after_s();
   if (gone != input_gone_) {
-    if (gone) {
+    if (gone)
       SPDLOG_WARN("event=input_gone last_frame={} cause=\"no features for {:g} s\" keyframes={}", last_result_.seq,
                   input_gone_after_s(), last_result_.keyframes);
-    } else if (arrived) {
+    else if (arrived)
       SPDLOG_INFO("event=input_back frame={}", last_result_.seq);
-    }
   }
   input_gone_ = gone;
   if (now_ns - last_diagnostics_ns_ < kDiagnosticsPeriodNs) return;

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How long after slam's first pose a page shows poses, and the room in colour: opens the page of a run that waits for it,
-// as a user does, in Chromium that draws in software on the same computer.
+// How long after slam's first pose a page shows poses, and the room in colour: opens the page of a run that waits for
+// it, as a user does, in Chromium that draws in software on the same computer.
 //   node tests/campaigns/page_room.mjs SOURCE [RUNS=5 [OPTION OF RTD RUN ...]]
 // RTD: the program (build/release/bin/rtd); RTD_NODE_TOOLS, RTD_CHROMIUM: as for the tests (deploy/setup.sh --viewers).
 
