@@ -8,6 +8,8 @@ set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/chroot.sh
 . "$root/deploy/chroot.sh"
+# shellcheck source=deploy/environment.sh
+. "$root/deploy/environment.sh"
 
 usage() {
   cat <<'TEXT'
@@ -21,7 +23,7 @@ Needs root and debootstrap. Without a command: test.
 TEXT
 }
 
-# The packages of setup.sh: libraries for arm64, programs for this machine.
+# The packages of setup.sh: libraries for arm64, programs for this machine, and node for arm64, which tests the page.
 # OpenCV for Python is not to be had beside the libraries of arm64: what needs it is skipped.
 packages_for() {
   local package
@@ -43,7 +45,7 @@ install_cross() {
     packages_for
   )
   inside "$place" apt-get install -y -qq --no-install-recommends crossbuild-essential-arm64 ccache \
-    python3-minimal dpkg-dev file "${packages[@]}" >"$work/apt.log" 2>&1 || {
+    python3-minimal dpkg-dev file nodejs:arm64 "${packages[@]}" >"$work/apt.log" 2>&1 || {
     tail -5 "$work/apt.log" >&2
     fail "the packages could not be installed"
   }
@@ -59,7 +61,7 @@ build() {
     tail -20 "$work/configure.log" >&2
     fail "cmake failed"
   }
-  inside "$place" cmake --build build/arm64 ${1:+--target "$@"}
+  inside "$place" cmake --build build/arm64 --parallel "$(compilers_at_once)" ${1:+--target "$@"} | show_progress
   since "$began" "built for arm64"
 }
 

@@ -8,9 +8,11 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <fastdds/dds/log/Log.hpp>
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 #include <thread>
@@ -100,6 +102,36 @@ TEST(FastddsProcesses, too_small_shared_memory_ends_with_the_fix_instead_of_a_bu
   EXPECT_EQ(code, 2);
   EXPECT_NE(output.find("/dev/shm is too small: 8 MiB free"), std::string::npos) << output;
   EXPECT_NE(output.find("remount,size="), std::string::npos) << output;
+}
+
+/// Counts what Fast DDS says of messages that it cannot read.
+class UnreadableMessages : public eprosima::fastdds::dds::LogConsumer {
+ public:
+  explicit UnreadableMessages(std::shared_ptr<std::atomic<int>> count) : count_(std::move(count)) {}
+  void Consume(const eprosima::fastdds::dds::Log::Entry& entry) override {
+    if (std::string(entry.context.category) == "RTPS_MSG_IN") ++*count_;
+  }
+
+ private:
+  std::shared_ptr<std::atomic<int>> count_;
+};
+
+TEST(FastddsProcesses, messages_in_shared_memory_end_where_they_were_written) {
+  using eprosima::fastdds::dds::Log;
+  const auto bus = connect_to("fastdds");
+  const auto unreadable = std::make_shared<std::atomic<int>>(0);
+  Log::RegisterConsumer(std::make_unique<UnreadableMessages>(unreadable));
+  Log::SetVerbosity(Log::Kind::Warning);
+  Collector<msg::RgbdFrame> frames;
+  const auto reader = bus->reader(topics::kFrame, frames.callback());
+  auto go = bus->writer(topics::kTracking);
+  const PeerProcess peer("fastdds", "send_frames", test_domain(), 60);
+  while (reader.matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  go.write(msg::TrackingResult{});
+  for (int frame = 0; frame < 60; ++frame) frames.next();
+  Log::Flush();
+  Log::SetVerbosity(Log::Kind::Error);
+  EXPECT_EQ(*unreadable, 0);
 }
 
 TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {
