@@ -43,7 +43,7 @@ export function samplePoints(map) {
   const out = [];
   let skip = 0;
   for (const keyframe of map.keyframes.values()) {
-    if (!keyframe.posed || !keyframe.alive || !keyframe.points) continue;
+    if (!keyframe.posed || !keyframe.points) continue;
     const { n } = keyframe.points;
     for (; skip < n; skip += stride) landmark(map, keyframe, skip, out, out.length);
     skip -= n;
@@ -76,7 +76,7 @@ export function keyframeExtent_m(map) {
 function keyframePositions(map) {
   const positions = [];
   for (const keyframe of map.keyframes.values()) {
-    if (keyframe.posed && keyframe.alive) positions.push(...map.pose(keyframe.slot).subarray(0, 3));
+    if (keyframe.posed) positions.push(...map.pose(keyframe.slot).subarray(0, 3));
   }
   return positions;
 }

@@ -13,7 +13,7 @@ const kByName = ["mover", "keyframe", "landmark"];   // of what is as near, the 
 export function* things(map, movers, shown) {
   if (shown.movers) for (const mover of movers) yield { kind: "mover", id: mover.id, point: mover.center, mover };
   for (const keyframe of map.keyframes.values()) {
-    if (!keyframe.posed || !keyframe.alive) continue;
+    if (!keyframe.posed) continue;
     const pose = map.pose(keyframe.slot);
     if (shown.keyframes) yield { kind: "keyframe", id: keyframe.id, point: [...pose.subarray(0, 3)], keyframe };
     if (shown.points && keyframe.points) yield* landmarks(map, keyframe);

@@ -119,14 +119,15 @@ export class MapLayer {
 
   #updatePoints(ids) {
     if (this.pool.wasteful) this.#refill();
-    else for (const id of ids) this.#setPoints(this.map.keyframes.get(id));
+    else for (const id of ids) this.#setPoints(id);
     for (let i = this.chunks.length; i < this.pool.chunks.length; ++i) this.#addChunk(this.pool.chunks[i]);
     this.pool.chunks.forEach((chunk, i) => this.#upload(chunk, this.chunks[i].geometry));
   }
 
-  #setPoints(keyframe) {
-    if (keyframe.points) this.pool.set(keyframe.id, keyframe.slot, keyframe.points.n, keyframe.points.data);
-    else this.pool.delete(keyframe.id);
+  #setPoints(id) {
+    const keyframe = this.map.keyframes.get(id);
+    if (keyframe?.points) this.pool.set(id, keyframe.slot, keyframe.points.n, keyframe.points.data);
+    else this.pool.delete(id);
   }
 
   #refill() {
@@ -136,7 +137,7 @@ export class MapLayer {
     }
     this.chunks = this.shown.points = [];
     this.pool.clear();
-    for (const keyframe of this.map.keyframes.values()) this.#setPoints(keyframe);
+    for (const id of this.map.keyframes.keys()) this.#setPoints(id);
   }
 
   #addChunk(chunk) {

@@ -16,7 +16,7 @@ const kSimple = [[0, 0, 0], kCorners[0], kCorners[0], kCorners[1], kCorners[1], 
 export function slotsApart(map, apart_m) {
   const taken = new Set(), slots = [];
   for (const keyframe of map.keyframes.values()) {
-    if (!keyframe.posed || !keyframe.alive) continue;
+    if (!keyframe.posed) continue;
     const cell = [...map.pose(keyframe.slot).subarray(0, 3)].map((value) => Math.floor(value / apart_m)).join();
     if (!taken.has(cell)) slots.push(keyframe.slot);
     taken.add(cell);
@@ -44,10 +44,10 @@ export function frustumLines(all, depth_m) {
 export function edgeSlots(map) {
   const covisibility = [], loops = [];
   for (const keyframe of map.keyframes.values()) {
-    if (!keyframe.posed || !keyframe.alive) continue;
+    if (!keyframe.posed) continue;
     for (const id of keyframe.others) {
       const other = map.keyframes.get(id);
-      if (!other?.posed || !other.alive) continue;
+      if (!other?.posed) continue;
       if (keyframe.id < id || !other.others.includes(keyframe.id)) covisibility.push(keyframe.slot, other.slot);
     }
   }

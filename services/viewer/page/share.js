@@ -67,7 +67,7 @@ function partsOf({ parts }) {
 function landmarksOf(map) {
   const out = [];
   for (const keyframe of map.keyframes.values()) {
-    if (!keyframe.posed || !keyframe.alive || !keyframe.points) continue;
+    if (!keyframe.posed || !keyframe.points) continue;
     for (let i = 0; i < keyframe.points.n; ++i) landmark(map, keyframe, i, out, out.length);
   }
   return out;

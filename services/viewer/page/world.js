@@ -13,10 +13,11 @@ export class MapState {
   #valuesOfWay = { states: new Column(Uint8Array), times_s: new Column(Float32Array), sigmas_m: new Column(Float32Array),
                    errors_m: new Column(Float32Array) };   // of its entries, as far as they came
   #truth = new Column(Float32Array, 3);
+  #removed = new Map();   // id -> slot of keyframes that had a pose: the trajectory may refer to them
 
   constructor(id) {
     this.id = id;
-    this.keyframes = new Map();      // id -> {slot, posed, alive, points, others}
+    this.keyframes = new Map();      // id -> {slot, posed, points, others}
     this.poses = new Float32Array(kFirstSlots * kPoseValues);
     this.slots = 0;
     this.loops = new Uint32Array(0);
@@ -55,10 +56,10 @@ export class MapState {
     return this.poses.subarray(slot * kPoseValues, (slot + 1) * kPoseValues);
   }
 
-  /** Slot of a keyframe that has a pose, -1 otherwise. A removed keyframe keeps its slot: trajectories may refer to it. */
+  /** Slot of a keyframe that has a pose, or had one when it was removed; -1 otherwise. */
   posedSlot(id) {
     const keyframe = this.keyframes.get(id);
-    return keyframe?.posed ? keyframe.slot : -1;
+    return keyframe?.posed ? keyframe.slot : this.#removed.get(id) ?? -1;
   }
 
   setPoses({ ids, poses }) {
@@ -67,7 +68,7 @@ export class MapState {
       const pose = this.pose(keyframe.slot);
       pose.set(poses.subarray(7 * i, 7 * i + 3), 0);
       pose.set(poses.subarray(7 * i + 3, 7 * i + 7), 4);
-      if (!keyframe.posed || !keyframe.alive) this.#appear(keyframe);
+      if (!keyframe.posed) this.#appear(keyframe);
     });
     this.changes.poses = true;
   }
@@ -76,14 +77,14 @@ export class MapState {
     for (const id of ids) {
       const keyframe = this.keyframes.get(id);
       if (!keyframe) continue;
-      if (keyframe.posed && keyframe.alive) {
+      if (keyframe.posed) {
         this.posedCount -= 1;
         this.#count(keyframe, -1);
+        this.#removed.set(id, keyframe.slot);
       }
-      keyframe.alive = false;
       keyframe.points = null;
-      keyframe.others = [];
       this.#rescale(keyframe);
+      this.keyframes.delete(id);
       this.changes.points.add(id);
     }
     this.changes.poses = this.changes.keyframes = this.changes.edges = true;
@@ -149,7 +150,7 @@ export class MapState {
   #keyframe(id) {
     let keyframe = this.keyframes.get(id);
     if (!keyframe) {
-      keyframe = { id, slot: this.slots++, posed: false, alive: true, points: null, others: [] };
+      keyframe = { id, slot: this.#removed.get(id) ?? this.slots++, posed: false, points: null, others: [] };
       this.keyframes.set(id, keyframe);
       if (this.slots * kPoseValues > this.poses.length) this.#grow();
     }
@@ -161,7 +162,7 @@ export class MapState {
   }
 
   #appear(keyframe) {
-    keyframe.posed = keyframe.alive = true;
+    keyframe.posed = true;
     this.posedCount += 1;
     this.#count(keyframe, +1);
     this.#rescale(keyframe);
@@ -169,13 +170,13 @@ export class MapState {
   }
 
   #count(keyframe, sign) {
-    if (!keyframe.posed || !keyframe.alive || !keyframe.points) return;
+    if (!keyframe.posed || !keyframe.points) return;
     this.pointCount += sign * keyframe.points.n;
     this.pointTotal += sign * Math.max(keyframe.points.total, keyframe.points.n);
   }
 
   #rescale(keyframe) {
-    const drawable = keyframe.posed && keyframe.alive && keyframe.points;
+    const drawable = keyframe.posed && keyframe.points;
     this.poses[keyframe.slot * kPoseValues + 3] = drawable ? keyframe.points.scale_m : 0;
   }
 }

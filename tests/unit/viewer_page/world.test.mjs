@@ -62,6 +62,17 @@ test("a removed keyframe takes its points and edges along, and may come back", (
   assert.equal(map.posedCount, 2);
 });
 
+test("of removed keyframes only the places stay, to which the trajectory refers", () => {
+  const map = mapWith(1, 2);
+  map.setTrajectory(decoded(encode.trajectory(0, [{ keyframe: 1, p: [0, 0, 0] }, { keyframe: 2, p: [0, 0, 1] }])));
+  map.remove({ ids: [1] });
+  assert.deepEqual([map.keyframes.size, map.posedSlot(1), trajectoryVertices(map).slots.length], [1, 0, 2]);
+  map.setPoints(pointsOf(1, 7));   // too late: not drawn, and the trajectory stays
+  assert.deepEqual([map.pointCount, map.poses[3], map.posedSlot(1)], [0, 0, 0]);
+  map.setPoses(posesOf(1));
+  assert.deepEqual([map.pointCount, map.posedSlot(1), map.slots], [7, 0, 2]);
+});
+
 test("more keyframes than slots: all poses are kept", () => {
   const ids = Array.from({ length: 3 * kFirstSlots }, (_, i) => i), map = mapWith(...ids);
   assert.equal(map.pose(map.posedSlot(700))[0], 700);
