@@ -61,7 +61,8 @@ bool exists(const std::string& path) {
 }
 
 TEST(FastddsProcesses, leftovers_of_a_killed_writer_are_cleaned_and_those_of_the_living_are_not) {
-  PeerProcess killed("fastdds", "flood_frames", test_domain()), living("fastdds", "send_heartbeats", test_domain());
+  // In another domain, so that it does not open what the first one has.
+  PeerProcess killed("fastdds", "flood_frames", test_domain()), living("fastdds", "send_heartbeats", test_domain() + 1);
   const auto has_frames_in = [](pid_t pid) { return maps_of(pid).find("fast_datasharing") != std::string::npos; };
   const auto has_segment = [](pid_t pid) {
     const std::string maps = maps_of(pid);  // named by the version of Fast DDS
