@@ -76,6 +76,27 @@ std::uint32_t participant_ids(int domain) {
   return domain < kLastDomain ? 119 : 60;
 }
 
+/// Where a participant receives samples.
+std::uint32_t sample_port(int domain, std::uint32_t id) {
+  const rtps::PortParameters ports;
+  return ports.getUnicastPort(static_cast<std::uint32_t>(domain), id) - ports.offsetd1 + ports.offsetd3;
+}
+
+std::string shm_name(std::uint32_t port) {
+  return std::string(kShmPrefix) + "_port" + std::to_string(port);
+}
+
+/// Whether this process has the lock by which others see that a port in shared memory is listened at.
+bool listens_in_shm_at(std::uint32_t port) {
+  const std::string lock = std::string(kShmFolder) + '/' + shm_name(port) + "_el";
+  std::error_code unreadable;
+  for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd", unreadable)) {
+    std::error_code closed;
+    if (std::filesystem::read_symlink(file, closed) == lock) return true;
+  }
+  return static_cast<bool>(unreadable);
+}
+
 /// The process id, and one more for each further participant of this process.
 std::uint32_t next_number() {
   static std::atomic<std::uint32_t> participants_so_far{0};
@@ -114,7 +135,7 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
   ParticipantsOfProcess& own = participants_of_process();
   const std::lock_guard lock(own.creating);
   // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
-  // receives nothing there. On an overloaded host the joins of those before take long.
+  // receives nothing there. On an overloaded host the joins of those before take long, and it begins anew.
   const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(5));
   const WithoutServerOfEnvironment announced;
   constexpr int kAttempts = 5;
@@ -125,10 +146,13 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
     const std::uint32_t id = free_id.value_or(number % participant_ids(options.domain));
     dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
     qos.wire_protocol().participant_id = static_cast<std::int32_t>(id);
-    if (auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none())) {
+    auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none());
+    if (participant == nullptr) continue;
+    if (!options.shared_memory || listens_in_shm_at(sample_port(options.domain, id))) {
       own.ids.insert(id);
       return {participant, id};
     }
+    factory.delete_participant(participant);
   }
   throw BusError("Fast DDS refused to join domain " + std::to_string(options.domain) + "; " + kMayBeRefused);
 }
@@ -137,16 +161,12 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
 
 std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first, const std::set<std::uint32_t>& taken,
                                                  const std::filesystem::path& shm_dir) {
-  const rtps::PortParameters ports;
   const std::uint32_t ids = participant_ids(domain);
   for (std::uint32_t step = 0; step < ids; ++step) {
     const std::uint32_t id = (first + step) % ids;
     if (taken.count(id) > 0) continue;
-    const std::uint32_t discovery_port = ports.getUnicastPort(static_cast<std::uint32_t>(domain), id);
-    const std::uint32_t port = discovery_port - ports.offsetd1 + ports.offsetd3;
     std::error_code unreadable;
-    if (!std::filesystem::exists(shm_dir / (std::string(kShmPrefix) + "_port" + std::to_string(port)), unreadable))
-      return id;
+    if (!std::filesystem::exists(shm_dir / shm_name(sample_port(domain, id)), unreadable)) return id;
   }
   return std::nullopt;
 }

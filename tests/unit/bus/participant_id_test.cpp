@@ -1,18 +1,24 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <fstream>
 #include <future>
 #include <memory>
 #include <set>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/endpoints.hpp"
@@ -20,6 +26,7 @@
 #include "common/bus/fastdds/qos_mapping.hpp"
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/raw_bus.hpp"
+#include "common/io/fd_writing.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -28,13 +35,15 @@ namespace fs = std::filesystem;
 
 constexpr int kDomain = 95;
 
+std::string port_name(std::uint32_t id) {
+  return std::string(kShmPrefix) + "_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id);
+}
+
 class ParticipantId : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
-  void add_port(std::uint32_t id) {
-    std::ofstream(folder_ / (std::string(kShmPrefix) + "_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id)));
-  }
+  void add_port(std::uint32_t id) { std::ofstream(folder_ / port_name(id)); }
   fs::path folder_ = fs::temp_directory_path() / ("rtd_participant_id_" + std::to_string(getpid()));
 };
 
@@ -88,6 +97,52 @@ TEST(ParticipantOnTheBus, does_not_choose_its_port_while_another_process_does) {
   EXPECT_EQ(joined.wait_for(milliseconds(1500)), std::future_status::timeout);
   other.reset();
   joined.wait();
+}
+
+/// Has every third port locked, but not there yet: as one that joins at the same time.
+class FasterProcess {
+ public:
+  FasterProcess() {
+    std::deque<io::Descriptor> locks;
+    for (std::uint32_t id = 0; id < 119; ++id) {
+      if (id % 3 != 0) continue;
+      paths_.push_back(fs::path(kShmFolder) / (port_name(id) + "_el"));
+      locks.emplace_back(open(paths_.back().c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0644));
+      EXPECT_EQ(flock(locks.back().get(), LOCK_EX | LOCK_NB), 0) << paths_.back();
+    }
+    pid_ = fork();  // from here on it has the locks
+    while (pid_ == 0) pause();
+  }
+  ~FasterProcess() {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    for (const fs::path& path : paths_) unlink(path.c_str());
+  }
+  FasterProcess(const FasterProcess&) = delete;
+  FasterProcess& operator=(const FasterProcess&) = delete;
+
+ private:
+  std::vector<fs::path> paths_;
+  pid_t pid_ = 0;
+};
+
+TEST(ParticipantOnTheBus, receives_also_when_another_process_was_faster_at_its_port) {
+  BusOptions options;
+  options.domain = kDomain;
+  const FasterProcess faster;
+  const auto join = [&] { return std::make_shared<Participant>(options, read_host_limits()); };
+  const auto poses = [] { return create_codec(MessageTraits<msg::TrackingResult>::kId); };
+  for (int tried = 0; tried < 3; ++tried) {  // of each remainder, as ids follow each other
+    std::promise<void> received;
+    FastddsReader reader(join(), poses(), "rtd/tracking", reader_qos(qos_settings(QosProfile::kPose), true),
+                         [&](auto, auto) { received.set_value(); }, {});
+    FastddsWriter writer(join(), poses(), "rtd/tracking", writer_qos(qos_settings(QosProfile::kPose), true), {});
+    for (int i = 0; i < 10'000 && (writer.matched() == 0 || reader.matched() == 0); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const msg::TrackingResult pose{};
+    EXPECT_TRUE(writer.write(&pose));
+    EXPECT_EQ(received.get_future().wait_for(std::chrono::seconds(10)), std::future_status::ready);
+  }
 }
 
 /// With Fast DDS' direct calls between participants of one process both wait forever within a fraction of a second.
