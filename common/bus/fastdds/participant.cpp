@@ -97,10 +97,12 @@ bool listens_in_shm_at(std::uint32_t port) {
   return static_cast<bool>(unreadable);
 }
 
-/// The process id, and one more for each further participant of this process.
+/// The process id for the first participant of this process, far from it for the next: the numbers beside it are those
+/// of processes that were started together.
 std::uint32_t next_number() {
+  constexpr std::uint32_t kApart = 31;
   static std::atomic<std::uint32_t> participants_so_far{0};
-  return static_cast<std::uint32_t>(getpid()) + participants_so_far++;
+  return static_cast<std::uint32_t>(getpid()) + kApart * participants_so_far++;
 }
 
 dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
@@ -134,12 +136,12 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
                                                                      dds::DomainParticipantListener* listener) {
   ParticipantsOfProcess& own = participants_of_process();
   const std::lock_guard lock(own.creating);
-  // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
-  // receives nothing there. On an overloaded host the joins of those before take long, and it begins anew.
-  const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(5));
   const WithoutServerOfEnvironment announced;
-  constexpr int kAttempts = 5;
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {  // the program that uses us may have participants, too
+  constexpr int kAttempts = 8;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
+    // receives nothing there. On an overloaded host the joins of those before take long; who was too late tries again.
+    const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(5));
     const std::uint32_t number = next_number();
     const auto free_id = free_participant_id(options.domain, number, own.ids);
     if (!free_id && std::exchange(options.shared_memory, false) && options.on_problem) options.on_problem(kNoFreePort);
@@ -147,7 +149,7 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
     dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
     qos.wire_protocol().participant_id = static_cast<std::int32_t>(id);
     auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none());
-    if (participant == nullptr) continue;
+    if (participant == nullptr) continue;  // the program that uses us may have participants, too
     if (!options.shared_memory || listens_in_shm_at(sample_port(options.domain, id))) {
       own.ids.insert(id);
       return {participant, id};
