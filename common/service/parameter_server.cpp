@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "common/bus/ros_graph.hpp"
@@ -58,6 +59,20 @@ bool lies_below(const std::string& name, const std::string& prefix, std::uint64_
   if (!name.starts_with(begin)) return false;
   const auto further = std::count(name.begin() + static_cast<std::ptrdiff_t>(begin.size()), name.end(), '.');
   return depth == 0 || static_cast<std::uint64_t>(further) < depth;
+}
+
+/// Indices of the parameters that count: of each name the last.
+std::vector<std::size_t> last_of_each(const std::vector<msg::Parameter>& parameters) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    std::erase_if(kept, [&](std::size_t earlier) { return parameters[earlier].name == parameters[i].name; });
+    kept.push_back(i);
+  }
+  return kept;
+}
+
+msg::SetParametersResult too_many(std::size_t count) {
+  return {false, fmt::format("{} parameters in one request, at most {} are allowed", count, kMaxParameters)};
 }
 
 /// A request that cannot be read gets an empty reply.
@@ -122,6 +137,7 @@ std::optional<SettingValue> Parameters::value_of(const Setting& setting) const {
 msg::ListParametersReply Parameters::list(const msg::ListParametersRequest& asked) const {
   const std::vector<std::string> prefixes = asked.prefixes.empty() ? std::vector<std::string>{""} : asked.prefixes;
   msg::ListParametersReply reply;
+  if (prefixes.size() > kMaxParameters) return reply;
   for (const Setting& setting : live_settings()) {
     const std::string name = setting.name;
     const auto holds = [&](const std::string& prefix) { return lies_below(name, prefix, asked.depth); };
@@ -135,6 +151,7 @@ msg::ListParametersReply Parameters::list(const msg::ListParametersRequest& aske
 
 msg::GetParametersReply Parameters::get(const msg::ParameterNames& asked) const {
   msg::GetParametersReply reply;
+  if (asked.names.size() > kMaxParameters) return reply;
   for (const std::string& name : asked.names) {
     const Setting* const setting = find(name);
     const auto value = setting != nullptr ? value_of(*setting) : std::nullopt;
@@ -145,6 +162,7 @@ msg::GetParametersReply Parameters::get(const msg::ParameterNames& asked) const 
 
 msg::GetParameterTypesReply Parameters::types(const msg::ParameterNames& asked) const {
   msg::GetParameterTypesReply reply;
+  if (asked.names.size() > kMaxParameters) return reply;
   for (const std::string& name : asked.names) {
     const Setting* const setting = find(name);
     reply.types.push_back(setting != nullptr ? type_of(setting->form) : type::kNotSet);
@@ -154,6 +172,7 @@ msg::GetParameterTypesReply Parameters::types(const msg::ParameterNames& asked) 
 
 msg::DescribeParametersReply Parameters::describe(const msg::ParameterNames& asked) const {
   msg::DescribeParametersReply reply;
+  if (asked.names.size() > kMaxParameters) return reply;
   for (const std::string& name : asked.names) {
     msg::ParameterDescriptor& descriptor = reply.descriptors.emplace_back();
     descriptor.name = name;
@@ -169,15 +188,23 @@ msg::DescribeParametersReply Parameters::describe(const msg::ParameterNames& ask
 }
 
 msg::SetParametersReply Parameters::set(const msg::ParameterList& asked) {
+  const std::size_t count = asked.parameters.size();
+  if (count > kMaxParameters) return {{count, too_many(count)}};
+  std::map<std::string_view, msg::SetParametersResult> results;
+  for (const std::size_t i : last_of_each(asked.parameters))
+    results[asked.parameters[i].name] = set_one(asked.parameters[i]);
   msg::SetParametersReply reply;
-  for (const msg::Parameter& parameter : asked.parameters) reply.results.push_back(set_one(parameter));
+  for (const msg::Parameter& parameter : asked.parameters) reply.results.push_back(results[parameter.name]);
   return reply;
 }
 
 msg::SetParametersAtomicallyReply Parameters::set_all(const msg::ParameterList& asked) {
+  const std::size_t count = asked.parameters.size();
+  if (count > kMaxParameters) return {too_many(count)};
   std::vector<std::pair<const Setting*, SettingValue>> before;
   msg::SetParametersAtomicallyReply reply{{true, ""}};
-  for (const msg::Parameter& parameter : asked.parameters) {
+  for (const std::size_t i : last_of_each(asked.parameters)) {
+    const msg::Parameter& parameter = asked.parameters[i];
     const Setting* const setting = find(parameter.name);
     const auto value = setting != nullptr ? value_of(*setting) : std::nullopt;
     reply.result = set_one(parameter);
@@ -207,6 +234,7 @@ msg::SetParametersResult Parameters::set_one(const msg::Parameter& parameter) {
 msg::SetParametersResult Parameters::apply(const Setting& setting, const SettingValue& value) {
   const std::optional<std::string> argument = argument_of(setting, value);
   if (!argument) return {false, fmt::format("{} takes {}", setting.name, wanted(setting.form))};
+  if (value_of(setting) == value) return {true, ""};
   const auto answer = commands_->call(setting.command, {*argument});
   if (!answer) return {false, fmt::format("rtd_{} does not take /{} now", service_, setting.command)};
   if (!answer->success) return {false, answer->message};

@@ -13,8 +13,13 @@
 
 namespace rtd::service {
 
+/// Of one request.
+inline constexpr std::size_t kMaxParameters = 16;
+
 /// The settings of a service as parameters of ROS 2: `ros2 param list`, `get`, `set` and `describe`. A value is read
-/// from the service's own heartbeat and set by its command, as everywhere. Thread-safe.
+/// from the service's own heartbeat and set by its command, as everywhere; one that has the value already is left
+/// alone, and of several values for one name in a request the last counts. A request of more than kMaxParameters is
+/// refused: the reply to one that sets says so, that to one that asks is empty. Thread-safe.
 class Parameters {
  public:
   Parameters(std::string service, Heartbeat& heartbeat, std::shared_ptr<bus::CommandBook> commands);

@@ -342,7 +342,6 @@ void FilterService::count(const FilterResult& result) {
   heartbeat.set_metric(service::metric::kFeaturesRemoved, result.removed);
   heartbeat.set_metric(service::metric::kObjects, static_cast<double>(result.objects.size()));
   heartbeat.set_metric(service::metric::kDynamicClusters, result.dynamic_clusters);
-  heartbeat.set_word(service::metric::kModePrefix, msg::name_of(filter_.mode()));
   constexpr auto kNames = service::metric::kFilterStageMs;
   for (std::size_t stage = 0; stage < kNames.size(); ++stage) {  // means so far
     total_stage_ms_[stage] += static_cast<double>(result.stage_ms[stage]);
@@ -380,6 +379,7 @@ bus::CommandAnswer FilterService::set_mode(const std::string& name) {
   const std::string before = msg::name_of(filter_.mode());
   if (before == name) return {true, "the mode is " + name + " already"};
   filter_.set_mode(found->mode);
+  runtime_.heartbeat.set_word(service::metric::kModePrefix, name);  // at once, frames or not
   movers_.clear();
   SPDLOG_INFO("event=mode_set_by_command mode={} before={}", name, before);
   return {true, fmt::format("mode {} from the next frame on, {} before", name, before)};

@@ -375,9 +375,10 @@ std::optional<std::uint64_t> ReplayService::paced_seq(const PlayedMessage& messa
 void ReplayService::show(const PlayState& state) {
   const std::int64_t time_ns = now_ns();
   if (line_) line_->show(state, time_ns);
-  if (time_ns < next_metrics_ns_ && state.paused == shown_paused_) return;
+  const std::pair set{state.paused, state.rate};
+  if (time_ns < next_metrics_ns_ && set == shown_) return;
   next_metrics_ns_ = time_ns + kMetricsEveryNs;
-  shown_paused_ = state.paused;
+  shown_ = set;
   service::Heartbeat& heartbeat = runtime_.heartbeat;
   heartbeat.set_metric(service::metric::kMessagesSent, static_cast<double>(state.sent));
   heartbeat.set_metric(service::metric::kReplayBeginS, static_cast<double>(first_ns_) * 1e-9);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/recordings/open.hpp"
@@ -139,7 +140,7 @@ class ReplayService final : public PlayerHost {
   std::unique_ptr<StatusLine> line_;
   std::set<mcap::ChannelId> step_ends_;
   std::int64_t next_metrics_ns_ = 0;
-  bool shown_paused_ = false;
+  std::pair<bool, double> shown_;             ///< paused, rate
   std::unique_ptr<ReplayCommands> commands_;  // last: it uses the inbox
 };
 

@@ -121,7 +121,6 @@ void SlamService::forget_map() {
 }
 
 service::ExitCode SlamService::run() {
-  runtime_.heartbeat.set_metric(service::metric::kLocalizeOnly, slam_.localize_only() ? 1 : 0);
   commands_.emplace(
       runtime_.bus, config_.map, maps_folder(config_, service::state_folder(service::process_environment())), slam_,
       map_keeper_, [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
@@ -129,6 +128,7 @@ service::ExitCode SlamService::run() {
     runtime_.heartbeat.tick();
     report_state();
     commands_->serve();
+    runtime_.heartbeat.set_metric(service::metric::kLocalizeOnly, slam_.localize_only() ? 1 : 0);
     const auto frame = arrivals_->pop_for(service::state_period(counters_.frames > 0));
     if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;
     if (frame) answer(**frame);
@@ -252,7 +252,6 @@ void SlamService::count(const SlamOutput& output) {
   heartbeat.set_metric(service::metric::kLoopsClosed, static_cast<double>(counters_.loops));
   heartbeat.set_metric(service::metric::kLandmarks, output.result.landmarks);
   heartbeat.set_metric(service::metric::kReadoutMs, 1e3 * slam_.readout_s());
-  heartbeat.set_metric(service::metric::kLocalizeOnly, slam_.localize_only() ? 1 : 0);
   if (motion_) count_motion();
   heartbeat.set_metric(service::metric::kSlamMs, static_cast<double>(output.result.stage_ms[msg::kStageSlamTotal]));
 }

@@ -98,6 +98,43 @@ TEST_F(ParametersTest, of_one_request_are_set_all_or_none) {
   EXPECT_EQ(calls_.back(), "replay/pause true");
 }
 
+TEST_F(ParametersTest, of_one_name_the_last_value_wins) {
+  msg::ParameterList list{{parameter("replay.speed", true), parameter("replay.paused", true)}};
+  for (int i = 0; i < 6; ++i) list.parameters.push_back(parameter("replay.paused", i % 2 == 0));
+  list.parameters.push_back(parameter("replay.speed", 2.0));
+  const msg::SetParametersReply reply = parameters_.set(list);
+  EXPECT_THAT(calls_, ElementsAre("replay/speed 2")) << "in the end it is not paused, as before";
+  ASSERT_EQ(reply.results.size(), list.parameters.size());
+  for (const msg::SetParametersResult& result : reply.results) EXPECT_TRUE(result.successful);
+  EXPECT_TRUE(
+      parameters_.set_all({{parameter("replay.speed", 5.0), parameter("replay.speed", 3.0)}}).result.successful);
+  EXPECT_THAT(calls_, ElementsAre("replay/speed 2", "replay/speed 3"));
+}
+
+TEST_F(ParametersTest, with_their_value_already_need_no_command) {
+  EXPECT_TRUE(parameters_.set({{parameter("replay.paused", false)}}).results[0].successful);
+  EXPECT_TRUE(parameters_.set_all({{parameter("replay.speed", 1.0)}}).result.successful);
+  EXPECT_THAT(calls_, IsEmpty());
+}
+
+TEST_F(ParametersTest, too_many_in_one_request_are_refused_as_a_whole) {
+  const std::vector<std::string> names(kMaxParameters + 1, "replay.speed");
+  std::vector<msg::Parameter> settings;
+  for (std::size_t i = 0; i < names.size(); ++i) settings.push_back(parameter("replay.paused", i % 2 == 0));
+  const msg::SetParametersReply reply = parameters_.set({settings});
+  ASSERT_EQ(reply.results.size(), settings.size()) << "a result for each, as clients expect";
+  EXPECT_FALSE(reply.results[0].successful);
+  EXPECT_EQ(reply.results[0].reason, "17 parameters in one request, at most 16 are allowed");
+  EXPECT_EQ(parameters_.set_all({settings}).result.reason, reply.results[0].reason);
+  EXPECT_THAT(calls_, IsEmpty());
+  EXPECT_THAT(parameters_.get({names}).values, IsEmpty());
+  EXPECT_THAT(parameters_.types({names}).types, IsEmpty());
+  EXPECT_THAT(parameters_.describe({names}).descriptors, IsEmpty());
+  EXPECT_THAT(parameters_.list({names, 0}).result.names, IsEmpty());
+  settings.pop_back();
+  EXPECT_TRUE(parameters_.set({settings}).results[0].successful);
+}
+
 TEST_F(ParametersTest, describe_types_ranges_and_words) {
   const msg::ParameterDescriptor speed = parameters_.describe({{"replay.speed"}}).descriptors[0];
   EXPECT_EQ(speed.type, type::kDouble);
