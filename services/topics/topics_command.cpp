@@ -61,6 +61,7 @@ void add_topics_commands(CLI::App& app, TopicsRequest& request) {
   echo->add_option("--max-array", request.max_array, "Values shown per array, 0 = all")->capture_default_str();
   CLI::App* mirror = app.add_subcommand("mirror", "Passes topics rtd/... on as /rtd/..., for ROS 2");
   mirror->callback([&request] { request.action = "mirror"; });
+  mirror->add_option("topics", request.topics, "Topics rtd/... (default: those of RTD-SLAM, of all robots)");
   service::add_bus_options(*mirror, request.bus);
 }
 
@@ -94,7 +95,7 @@ int run_topics(const TopicsRequest& request, std::ostream& out, std::ostream& er
       if (request.topics.size() > 1) throw service::ConfigError(kOneTopic + request.topics.front());
     }
     TopicsSession session(request.bus);
-    if (request.action == "mirror") return mirror_topics(session, out);
+    if (request.action == "mirror") return mirror_topics(request, session, out);
     if (request.action == "list") return list_topics(request, session, out, err);
     if (request.action == "hz") return measure_topics(request, session, out, err);
     return echo_topic(request, session, out, err);

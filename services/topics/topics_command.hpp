@@ -15,7 +15,8 @@ namespace rtd::topics {
 struct TopicsRequest {
   std::string action;  ///< list, hz, echo
   service::ConfigSources bus;
-  std::vector<std::string> topics;  ///< hz: empty = all; echo: one, or a recording and its topics. ROS or DDS names
+  std::vector<std::string> topics;  ///< ROS or DDS names. hz: empty = all; mirror: empty = ours; echo: one, or a
+                                    ///< recording and its topics
   double wait_s = 6;                ///< list: longest search
   double duration_s = -1;           ///< hz: 5; echo: 0 = until Ctrl-C or the end of the recording
   std::uint64_t count = 0;          ///< messages (of each topic), 0 = any number

@@ -4,15 +4,19 @@
 // `rtd topics mirror`: our own topics under names that ROS 2 knows.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <ostream>
 #include <set>
 
 #include "common/bus/network.hpp"
+#include "common/bus/robot.hpp"
+#include "common/bus/topic_roles.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/exit_code.hpp"
+#include "services/topics/topics_command.hpp"
 #include "services/topics/topics_session.hpp"
 
 namespace rtd::topics {
@@ -63,19 +67,27 @@ class Mirror {
   std::unique_ptr<bus::RawReader> reader_;  // last: it uses the writer
 };
 
-bool is_mirrored(const bus::RawTopic& topic) {
-  return topic.name.starts_with(kOwn) && !bus::stays_on_host(topic.name) && topic.name != ros2::kSchemasTopic;
+/// Topics of the table, of any robot, or those that are named: another program may have any number of others.
+bool is_mirrored(const bus::RawTopic& topic, const std::vector<std::string>& named) {
+  const std::string& wire_name = topic.name;
+  if (!wire_name.starts_with(kOwn) || bus::stays_on_host(wire_name) || wire_name == ros2::kSchemasTopic) return false;
+  if (named.empty())
+    return std::ranges::count(bus::topic_roles(), bus::split_robot(wire_name).topic, &bus::TopicRoles::topic) > 0;
+  const bus::RawTopic mirror{Mirror::mirror_name(wire_name), topic.type};
+  return std::ranges::any_of(named, [&](const std::string& name) { return is_called(mirror, name); });
 }
 
 }  // namespace
 
-int mirror_topics(TopicsSession& session, std::ostream& out) {
+int mirror_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out) {
+  constexpr std::size_t kMostMirrors = 256;  // of 32 robots: another program may have the topics of any number
   std::map<std::string, Mirror> mirrors;
   while (session.continues(100ms)) {
     std::set<std::string> present;
     for (const bus::TopicWriter& writer : session.writers()) {
       const std::string& name = writer.topic.name;
-      if (!is_mirrored(writer.topic) || !present.insert(name).second) continue;
+      if (!is_mirrored(writer.topic, request.topics) || !present.insert(name).second) continue;
+      if (mirrors.size() >= kMostMirrors) continue;
       if (mirrors.try_emplace(name, session.bus(), writer).second)
         out << fmt::format("{} as {}\n", name, ros2::ros_topic(Mirror::mirror_name(name))) << std::flush;
     }

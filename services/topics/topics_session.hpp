@@ -51,7 +51,8 @@ class TopicsSession {
 int list_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
 int measure_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
 int echo_topic(const TopicsRequest& request, TopicsSession& session, std::ostream& out, std::ostream& err);
-/// Publishes the topics rtd/... of the domain as /rtd/... until it is interrupted; images and features are left out.
-int mirror_topics(TopicsSession& session, std::ostream& out);
+/// Publishes our topics rtd/... of the domain, or those named, as /rtd/... until it is interrupted; images and features
+/// are left out.
+int mirror_topics(const TopicsRequest& request, TopicsSession& session, std::ostream& out);
 
 }  // namespace rtd::topics

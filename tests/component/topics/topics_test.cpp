@@ -30,6 +30,23 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
+/// While it lives, an interrupt of this thread waits for the command.
+class InterruptWaits {
+ public:
+  InterruptWaits() {
+    sigset_t interrupt;
+    sigemptyset(&interrupt);
+    sigaddset(&interrupt, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &interrupt, &before_);
+  }
+  ~InterruptWaits() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  InterruptWaits(const InterruptWaits&) = delete;
+  InterruptWaits& operator=(const InterruptWaits&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
 class Topics : public ::testing::TestWithParam<std::string> {
  protected:
   Topics() {
@@ -138,10 +155,7 @@ TEST_P(Topics, whose_writers_come_one_after_the_other_are_all_listed) {
 }
 
 TEST_P(Topics, of_ours_are_passed_on_under_a_name_of_ros2) {
-  sigset_t interrupt, before;
-  sigemptyset(&interrupt);
-  sigaddset(&interrupt, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &interrupt, &before);  // it waits for the command
+  const InterruptWaits waits;
   const auto bus = bus::connect(options_);
   auto results = bus->writer(bus::topics::kTracking);
   auto features = bus->writer(bus::topics::kFeatures);
@@ -171,10 +185,29 @@ TEST_P(Topics, of_ours_are_passed_on_under_a_name_of_ros2) {
   });
   EXPECT_EQ(run("mirror"), service::kOk) << err_.str();
   sender.join();
-  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   EXPECT_EQ(received.size(), 4 + sizeof(msg::TrackingResult));
   EXPECT_THAT(out_.str(), HasSubstr("rtd/tracking as /rtd/tracking\n"));
   EXPECT_THAT(out_.str(), Not(HasSubstr("features")));
+}
+
+TEST_P(Topics, of_other_programs_are_passed_on_when_they_are_named) {
+  const auto raw = bus::connect_raw(options_);
+  const std::string type = "other_msgs::msg::dds_::Thing_";
+  std::vector<std::unique_ptr<bus::RawWriter>> writers;
+  for (const char* name : {"rtd/other1", "rtd/other2", "rtd/map"}) writers.push_back(raw->writer({name, type}, {}));
+  const InterruptWaits waits;
+  const auto mirrored = [&](const std::string& last, const std::vector<std::string>& named) {
+    std::thread watcher([&, command = pthread_self()] {
+      const auto is_last = [&](const bus::TopicWriter& writer) { return writer.topic.name == "rt/" + last; };
+      while (std::ranges::none_of(raw->writers(), is_last)) std::this_thread::sleep_for(5ms);
+      pthread_kill(command, SIGINT);
+    });
+    EXPECT_EQ(run("mirror", named), service::kOk) << err_.str();
+    watcher.join();
+    return out_.str();
+  };
+  EXPECT_EQ(mirrored("rtd/map", {}), "rtd/map as /rtd/map\n");
+  EXPECT_EQ(mirrored("rtd/other2", {"/rtd/other2"}), "rtd/other2 as /rtd/other2\n");
 }
 
 TEST_P(Topics, have_a_rate) {
