@@ -56,12 +56,15 @@ std::string token_of(const ServiceConfig& config) {
   return random_text();
 }
 
-WebOptions web_options(const ServiceConfig& config, const std::string& token) {
+WebOptions web_options(const ServiceConfig& config, const std::string& token, const std::string& look_token) {
   WebOptions options;
   options.address = config.bind_address;
   options.port = static_cast<std::uint16_t>(config.port);
-  options.access = {
-      .hosts = config.hosts, .origins = config.origins, .token = token, .look_freely = look_freely(config)};
+  options.access = {.hosts = config.hosts,
+                    .origins = config.origins,
+                    .token = token,
+                    .look_token = look_token,
+                    .look_freely = look_freely(config)};
   if (is_loopback(config.bind_address) && options.access.hosts.empty()) options.access.hosts = {"localhost"};
   if (config.publish) options.longest_message_bytes = 16U << 20U;
   return options;
@@ -116,6 +119,7 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
       token_(token_of(config)),
+      look_token_(look_freely(config) ? "" : random_text()),
       site_(RTD_THREE_DIR),
       foxglove_("RTD-SLAM " RTD_VERSION, random_text(),
                 {{"vendor", runtime.bus.vendor()}, {"domain", std::to_string(runtime.bus_options.domain)}},
@@ -123,7 +127,8 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
       page_({.version = RTD_VERSION,
              .vendor = runtime.bus.vendor(),
              .domain = runtime.bus_options.domain,
-             .control = !config.read_only},
+             .control = !config.read_only,
+             .look_token = look_token_},
             page_limits(config),
             {.on_call =
                  [this](const std::string& robot, const std::string& name, const std::string& argument, auto answer) {
@@ -132,7 +137,7 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
              .now_ms = wall_clock_ms}) {
   try {
     server_.emplace(
-        web_options(config_, token_), site_,
+        web_options(config_, token_, look_token_), site_,
         [this](const std::string& subprotocol, Rights rights) { return open(subprotocol, rights); }, reports());
   } catch (const WebError& error) {
     throw ConfigError(error.what());

@@ -93,7 +93,7 @@ class ViewerService {
 
   const Config config_;
   service::Runtime& runtime_;
-  const std::string token_;
+  const std::string token_, look_token_;
   const Site site_;
   FoxgloveHub foxglove_;
   PageHub page_;

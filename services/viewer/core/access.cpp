@@ -30,13 +30,11 @@ bool same_text(std::string_view given, std::string_view expected) {
   return difference == 0;
 }
 
-bool right_token(const AccessRules& rules, const AccessRequest& request) {
-  if (rules.token.empty()) return true;
+bool knows(const std::string& token, const AccessRequest& request) {
   constexpr std::string_view kBearer = "Bearer ";
-  if (request.authorization.starts_with(kBearer) &&
-      same_text(request.authorization.substr(kBearer.size()), rules.token))
+  if (request.authorization.starts_with(kBearer) && same_text(request.authorization.substr(kBearer.size()), token))
     return true;
-  return same_text(query_value(request.target, "token"), rules.token);
+  return same_text(query_value(request.target, "token"), token);
 }
 
 /// Any page in a file or a sandboxed frame has such an origin, whoever wrote it.
@@ -85,7 +83,8 @@ Access check_access(const AccessRules& rules, const AccessRequest& request) {
   if (check_host(rules, request.host) != Access::kGranted) return Access::kWrongHost;
   if (is_anonymous(request.origin) && rules.token.empty()) return Access::kAnonymousOrigin;
   if (!right_origin(rules, request)) return Access::kWrongOrigin;
-  if (right_token(rules, request)) return Access::kGranted;
+  if (rules.token.empty() || knows(rules.token, request)) return Access::kGranted;
+  if (!rules.look_token.empty() && knows(rules.look_token, request)) return Access::kToLook;
   return rules.look_freely && !is_anonymous(request.origin) ? Access::kToLook : Access::kNoToken;
 }
 

@@ -14,6 +14,7 @@ struct AccessRules {
   std::vector<std::string> hosts;    ///< names by which this server may be addressed, beside loopback; empty: any
   std::vector<std::string> origins;  ///< of other sites whose pages may connect: "https://app.foxglove.dev"
   std::string token;                 ///< empty: none is asked for
+  std::string look_token = {};       ///< who knows this one may look, and only that; empty: there is none
   bool look_freely = false;          ///< a client without the token may look, and only that: also a page that
                                      ///< outlives the viewer and has the token of the one before
 };

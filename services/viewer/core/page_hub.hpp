@@ -42,7 +42,8 @@ struct PageLimits {
 struct PageGreeting {
   std::string version, vendor;
   std::uint32_t domain = 0;
-  bool control = false;  ///< commands may be called
+  bool control = false;         ///< commands may be called
+  std::string look_token = {};  ///< for links of pages that know the other one; empty: a page needs none to look
 };
 
 class PageSession;

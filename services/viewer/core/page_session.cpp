@@ -37,14 +37,17 @@ std::uint64_t number(const json& message, const char* name) {
   return found != message.end() && found->is_number_unsigned() ? found->get<std::uint64_t>() : 0;
 }
 
-std::string hello(const PageGreeting& greeting, bool control, double now_ms) {
-  return json_line({{"type", "hello"},
-                    {"protocol", 1},
-                    {"version", greeting.version},
-                    {"domain", greeting.domain},
-                    {"vendor", greeting.vendor},
-                    {"control", control},
-                    {"server_ms", now_ms}});
+std::string hello(const PageGreeting& greeting, Rights rights, double now_ms) {
+  const bool knows_token = rights == Rights::kControl;
+  json message{{"type", "hello"},
+               {"protocol", 1},
+               {"version", greeting.version},
+               {"domain", greeting.domain},
+               {"vendor", greeting.vendor},
+               {"control", knows_token && greeting.control},
+               {"server_ms", now_ms}};
+  if (knows_token) message["look_token"] = greeting.look_token;
+  return json_line(message);
 }
 
 /// Keyframes of one map that changed after `revision`, as many as one message takes, and up to where they reach. A
@@ -83,7 +86,7 @@ PageSession::PageSession(PageHub& hub, Rights rights)
       all_(hub.limits_.bytes_per_s, hub.limits_.burst_bytes),
       views_(hub.limits_.view_bytes_per_s, hub.limits_.view_bytes_per_s / 4) {
   hub_.sessions_.insert(this);
-  outbox_.push_control(text_frame(hello(hub_.greeting_, may_control_, hub_.hooks_.now_ms())));
+  outbox_.push_control(text_frame(hello(hub_.greeting_, rights, hub_.hooks_.now_ms())));
 }
 
 PageSession::~PageSession() {

@@ -19,6 +19,15 @@ export function hashOf({ layers, view, robot, at_s }) {
   return new URLSearchParams(fields).toString();
 }
 
+/** The address of a page without the token that allows commands. look_token: which the viewer has for those who only
+    look, "": they need none; undefined: this page only looks itself. */
+export function addressToLook(href, look_token) {
+  const address = new URL(href);
+  if (look_token === "") address.searchParams.delete("token");
+  else if (look_token) address.searchParams.set("token", look_token);
+  return address.href;
+}
+
 /** What a link asks for; parts that are missing or no use are undefined. */
 export function parseHash(hash) {
   const fields = new URLSearchParams(hash.replace(/^#/, ""));

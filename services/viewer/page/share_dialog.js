@@ -4,28 +4,36 @@
 // The dialog that passes on what is shown: a link, or a file.
 
 import { byId, setText } from "./dom.js";
-import { aroundTarget, fileOf, hashOf, inMap, sceneOf } from "./share.js";
+import { addressToLook, aroundTarget, fileOf, hashOf, inMap, sceneOf } from "./share.js";
 
 export class ShareDialog {
   constructor(app) {
     this.app = app;
     byId("share-open").addEventListener("click", () => this.open());
+    byId("share-control").addEventListener("change", () => this.#showLink());
     byId("share-copy").addEventListener("click", () => this.#copy());
     byId("share-save").addEventListener("click", () => this.#save());
   }
 
   open() {
-    byId("share-link").value = this.link();
-    setText(byId("share-answer"), "");
+    byId("share-control").checked = false;
+    byId("share-control").parentElement.hidden = !this.app.session.hello?.control;
+    this.#showLink();
     byId("share").showModal();
   }
 
-  /** The page's address with what is shown. */
+  #showLink() {
+    byId("share-link").value = this.link();
+    setText(byId("share-answer"), "");
+  }
+
+  /** The page's address with what is shown; it allows no commands unless that is wanted. */
   link() {
     const { scene, settings, robot } = this.app;
     const view = scene?.view() ?? { mode: "follow", eye: [0, 0, 0], target: [0, 0, 0] };
     const hash = hashOf({ layers: settings.layers, view, robot: robot?.name, at_s: robot?.playback?.position_s });
-    return `${location.href.replace(/#.*/, "")}#${hash}`;
+    const address = byId("share-control").checked ? location.href : addressToLook(location.href, this.app.session.hello?.look_token);
+    return `${address.replace(/#.*/, "")}#${hash}`;
   }
 
   async #copy() {

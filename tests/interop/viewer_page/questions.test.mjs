@@ -113,7 +113,12 @@ test("a link opens the same layers and view; a file holds the map", async () => 
   await page.click("#layer-keyframes");
   await page.keyboard.press("3");
   await page.keyboard.press("h");
-  const link = await page.$eval("#share-link", (field) => field.value);
+  const linkNow = () => page.$eval("#share-link", (field) => field.value);
+  const link = await linkNow();
+  assert.ok(link.includes("token=picture"), "it lets others look");
+  await screenshot(page, "share");
+  await page.click("#share-control");
+  assert.ok(!(await linkNow()).includes("token=picture"), "with control it has the page's own token");
   const folder = mkdtempSync(join(tmpdir(), "rtd_share_"));
   const session = await page.createCDPSession();
   await session.send("Page.setDownloadBehavior", { behavior: "allow", downloadPath: folder });

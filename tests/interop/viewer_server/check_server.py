@@ -266,8 +266,10 @@ class ViewerTest(unittest.TestCase):
         token = viewer.wait_for(r"token=(\w+)").group(1)
 
         async def check():
-            async with viewer.connect(PAGE, f"/live?token={token}"):
-                pass
+            async with viewer.connect(PAGE, f"/live?token={token}") as page:
+                look_token = json.loads(await page.recv())["look_token"]
+            async with viewer.connect(PAGE, f"/live?token={look_token}") as page:
+                self.assertFalse(json.loads(await page.recv())["control"])
             async with viewer.connect(FOXGLOVE, **{HEADERS: {"Authorization": f"Bearer {token}"}}):
                 pass
             for path in ("/live", "/live?token=wrong"):

@@ -43,7 +43,7 @@ function answerHttp(request, response) {
 export class FakeServer {
   /** options: of FakeRobot, and robots (how many), control, empty (no robot at all). */
   constructor(options = {}) {
-    this.options = { robots: 1, control: true, empty: false, ...options };
+    this.options = { robots: 1, control: true, lookToken: "picture", empty: false, ...options };
     this.robots = this.options.empty ? [] : Array.from({ length: this.options.robots }, (_, i) => new FakeRobot(i, this.options));
     this.calls = [];       // {name, argument} in the order of arrival
     this.wanted = [];      // options of the pages
@@ -94,7 +94,7 @@ export class FakeServer {
     socket.on("message", (text) => this.#receive(socket, JSON.parse(text)));
     const names = this.robots.map(({ index, name }) => ({ index, name }));
     this.#sendTo(socket, { type: "hello", protocol: 1, version: "0.9.0", domain: 0, vendor: "fastdds",
-                           control: this.options.control, server_ms: Date.now() });
+                           control: this.options.control, look_token: this.options.lookToken, server_ms: Date.now() });
     this.#sendTo(socket, { type: "robots", robots: names });
     for (const robot of this.robots) {
       for (const message of robot.wholeState()) this.#sendTo(socket, message);

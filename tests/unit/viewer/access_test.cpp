@@ -66,6 +66,18 @@ TEST(Access, without_the_token_a_client_of_loopback_only_looks) {
             Access::kWrongOrigin);
 }
 
+TEST(Access, who_knows_the_token_to_look_only_looks) {
+  const AccessRules rules{.token = "s3cret", .look_token = "picture"};
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/live?token=picture"}), Access::kToLook);
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/", .authorization = "Bearer picture"}), Access::kToLook);
+  EXPECT_EQ(check_access(rules, {.host = "robot", .target = "/live?token=s3cret"}), Access::kGranted);
+  const AccessRules none{.token = "s3cret"};
+  for (const char* target : {"/live", "/live?token="}) {
+    EXPECT_EQ(check_access(rules, {.host = "robot", .target = target}), Access::kNoToken);
+    EXPECT_EQ(check_access(none, {.host = "robot", .target = target}), Access::kNoToken);
+  }
+}
+
 TEST(Access, a_query_is_taken_apart) {
   EXPECT_EQ(query_value("/?a=1&b=%41%zz%4", "b"), "A%zz%4");
   EXPECT_EQ(query_value("/?a=1&&b=2&", "b"), "2");

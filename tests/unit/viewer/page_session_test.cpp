@@ -61,7 +61,7 @@ class PageSessionTest : public ::testing::Test {
     while (auto frame = page.next(now_ns)) bytes[name_of(*frame)] += frame->size();
     return bytes;
   }
-  PageHub hub{{.version = "1", .vendor = "x", .domain = 3, .control = true},
+  PageHub hub{{.version = "1", .vendor = "x", .domain = 3, .control = true, .look_token = "picture"},
               {},
               {.on_call =
                    [this](const std::string& robot, const std::string& name, const std::string& argument, auto answer) {
@@ -83,6 +83,8 @@ TEST_F(PageSessionTest, a_page_without_the_token_sees_everything_and_calls_nothi
     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
   EXPECT_FALSE(json::parse(text_of(*hello))["control"]);
+  EXPECT_FALSE(json::parse(text_of(*hello)).contains("look_token"));
+  EXPECT_EQ(json::parse(text_of(*hub.open()->next(kSecond)))["look_token"], "picture") << "for the links it makes";
   take(*page, kSecond);
   page->on_text(R"({"op":"call","id":7,"robot":0,"name":"/slam/save_map","argument":"a"})");
   const auto refused = page->next(2 * kSecond);

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { aroundTarget, fileOf, hashOf, inMap, parseHash, sceneOf } from "../../../services/viewer/page/share.js";
+import { addressToLook, aroundTarget, fileOf, hashOf, inMap, parseHash, sceneOf } from "../../../services/viewer/page/share.js";
 import { MapState } from "../../../services/viewer/page/world.js";
 
 const kAll = { dense: true, moving: true, points: true, trajectory: true, truth: true };
@@ -23,6 +23,13 @@ function pointsOf({ origin, scale, points }) {
   const bytes = Uint8Array.from(atob(points), (letter) => letter.charCodeAt(0)), steps = new Int16Array(bytes.buffer);
   return Array.from({ length: steps.length / 3 }, (_, i) => [0, 1, 2].map((axis) => Number((origin[axis] + scale * steps[3 * i + axis]).toFixed(2))));
 }
+
+test("a link to look has no token that allows more", () => {
+  const page = "http://robot:8765/?token=s3cret&x=1";
+  assert.equal(addressToLook(page, ""), "http://robot:8765/?x=1", "none is needed to look");
+  assert.equal(addressToLook(page, "picture"), "http://robot:8765/?token=picture&x=1");
+  assert.equal(addressToLook(page, undefined), page, "this page only looks itself");
+});
 
 test("a link brings back layers, view, robot and time", () => {
   const view = { mode: "free", eye: [1, 2.5, -3], target: [0, 0, 0.125] };
