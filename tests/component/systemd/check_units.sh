@@ -6,6 +6,9 @@
 # exposure is at most 3.0, and each service takes the options of rtd-slam.conf. Exit code 77 = skipped: no systemd.
 set -eu
 units="$1" bin="$2"
+for unit in "$units"/*.service; do
+  grep -q '^MemoryHigh=' "$unit" && grep -q '^MemoryMax=' "$unit" || { echo "$unit: memory without a limit"; exit 1; }
+done
 command -v systemd-analyze >/dev/null || { echo "SKIPPED: systemd-analyze is not installed"; exit 77; }
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
