@@ -77,8 +77,6 @@ class SignalWatcher {
   std::thread thread_;
 };
 
-constexpr std::chrono::milliseconds kEndOfBus{3'000};
-
 /// Killed processes leave shared memory behind.
 void remove_leftovers() {
   const bus::CleanReport report = bus::remove_shm_leftovers();
@@ -143,7 +141,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     only_one.emplace(ServicePlace{definition.name, options.robot, options.domain, options.vendor == "inprocess"});
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
-  BoundedEnd end("rtd-" + definition.name, kEndOfBus);
+  BoundedEnd end("rtd-" + definition.name);
   const std::int64_t begin_ns = monotonic_ns();
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
@@ -170,7 +168,9 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     std::jthread offering;  // beside the work, too; of a service that several processes may be, none is the node
     if (shared.empty() && !options.security.enabled())
       offering = std::jthread([&] { offer_parameters(parameters, *bus, definition.name, heartbeat); });
-    const auto bound_end = [&end](int exit_code) { end.begin(exit_code); };
+    const auto bound_end = [&](int exit_code) {
+      end.begin(exit_code, stop.stop_requested() ? BoundedEnd::kWhenAsked : BoundedEnd::kByItself);
+    };
     Runtime runtime{*bus, heartbeat, stop, pace, options, bound_end, trace};
     SPDLOG_INFO("event=started dds={} domain={} pace={} pid={}{}", bus->vendor(), options.domain, to_string(pace),
                 getpid(), options.security.enabled() ? " enclave=" + options.security.enclave : "");
@@ -244,14 +244,16 @@ BoundedEnd::~BoundedEnd() {
   if (thread_.joinable()) thread_.join();
 }
 
-void BoundedEnd::begin(int exit_code) {
-  if (!thread_.joinable()) thread_ = std::thread([this, exit_code] { watch(exit_code); });
+void BoundedEnd::begin(int exit_code, std::chrono::milliseconds limit) {
+  if (thread_.joinable()) return;
+  sd_notify(0, "STOPPING=1");
+  thread_ = std::thread([this, exit_code, limit] { watch(exit_code, limit); });
 }
 
-void BoundedEnd::watch(int exit_code) {
-  if (ended_.wait_for(limit_)) return;
+void BoundedEnd::watch(int exit_code, std::chrono::milliseconds limit) {
+  if (ended_.wait_for(limit)) return;
   std::fprintf(stderr, "%s: the bus did not end within %lld ms and is left behind\n", program_.c_str(),
-               static_cast<long long>(limit_.count()));
+               static_cast<long long>(limit.count()));
   std::fflush(nullptr);
   std::_Exit(exit_code);
 }

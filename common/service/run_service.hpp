@@ -79,23 +79,26 @@ class NoPeersWarning {
   std::thread thread_;
 };
 
-/// Ends the process when what was declared after this takes too long to be destroyed: a bus that malformed datagrams
-/// have blocked must not keep a program from ending whose work is done.
+/// Ends the process when what was declared after this takes too long to be destroyed: a bus that other programs have
+/// blocked or filled must not keep a program from ending whose work is done.
 class BoundedEnd {
  public:
-  BoundedEnd(std::string program, std::chrono::milliseconds limit) : program_(std::move(program)), limit_(limit) {}
+  /// A program that ends by itself may take its time. One that was asked to has less: it goes before whoever asked
+  /// (`rtd run` after Ctrl-C) loses patience and kills it.
+  static constexpr std::chrono::milliseconds kByItself{3'000}, kWhenAsked{400};
+
+  explicit BoundedEnd(std::string program) : program_(std::move(program)) {}
   ~BoundedEnd();
   BoundedEnd(const BoundedEnd&) = delete;
   BoundedEnd& operator=(const BoundedEnd&) = delete;
 
-  /// The work is done, all results are written: from now on the time counts.
-  void begin(int exit_code);
+  /// The work is done, all results are written: reports that, and from now on the time counts.
+  void begin(int exit_code, std::chrono::milliseconds limit);
 
  private:
-  void watch(int exit_code);
+  void watch(int exit_code, std::chrono::milliseconds limit);
 
   const std::string program_;
-  const std::chrono::milliseconds limit_;
   StopToken ended_;
   std::thread thread_;
 };

@@ -34,8 +34,6 @@
 namespace rtd::launcher {
 namespace {
 
-constexpr std::chrono::milliseconds kEndOfBus{4000};
-
 /// A pipe without a reader is full after 64 kB, a terminal after Ctrl-S.
 bool takes_line(int fd) {
   pollfd output{fd, POLLOUT, 0};
@@ -49,7 +47,7 @@ Terminal open_terminal(bool quiet) {
   options.has_room = [] { return takes_line(STDERR_FILENO); };
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20) options.columns = size.ws_col;
-  return Terminal(std::cerr, options);
+  return Terminal(std::clog, options);
 }
 
 void print_setup(const RunSetup& setup, Terminal& terminal) {
@@ -133,7 +131,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   Terminal terminal = open_terminal(setup.quiet);
   service::init_logging("launcher", "warn");
   survive_lost_locks();
-  service::BoundedEnd end("rtd run", kEndOfBus);
+  service::BoundedEnd end("rtd run");
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus_options);
   print_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
@@ -155,7 +153,8 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   if (outcome == RunOutcome::kComplete && !not_used.empty()) terminal.warn("rtd: " + not_used);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   session.keep_viewer();
-  end.begin(result.code);
+  end.begin(result.code,
+            outcome == RunOutcome::kInterrupted ? service::BoundedEnd::kWhenAsked : service::BoundedEnd::kByItself);
   if (lost_locks() > 0) {  // threads that stand still cannot be waited for
     std::cout.flush();
     std::_Exit(result.code);

@@ -321,13 +321,26 @@ TEST_F(RunServiceTest, sigterm_asks_the_service_to_stop) {
 TEST(BoundedEndTest, ends_the_process_only_when_its_time_is_up) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto hang = [] {
-    BoundedEnd end("rtd-slam", 50ms);
-    end.begin(7);
+    BoundedEnd end("rtd-slam");
+    end.begin(7, 50ms);
     std::this_thread::sleep_for(60s);
   };
   EXPECT_EXIT(hang(), ::testing::ExitedWithCode(7), "rtd-slam: the bus did not end within 50 ms");
-  BoundedEnd end("rtd-slam", 60s);
-  end.begin(7);
+  BoundedEnd end("rtd-slam");
+  end.begin(7, 60s);
+}
+
+TEST_F(RunServiceTest, one_that_was_asked_to_end_goes_before_it_is_killed) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  struct Stuck {
+    ~Stuck() { std::this_thread::sleep_for(60s); }
+    ExitCode run() { return kPartialLoss; }
+  };
+  body_ = [](Runtime& runtime) {
+    runtime.stop.request_stop();
+    return run_to_end(Stuck(), runtime);
+  };
+  EXPECT_EXIT(run({"--dds", "inprocess"}), ::testing::ExitedWithCode(kPartialLoss), "did not end within 400 ms");
 }
 
 TEST_F(RunServiceTest, the_end_is_bounded_before_a_service_is_destroyed) {

@@ -47,7 +47,7 @@ BusOptions network_options(char** argv) {
 struct End {
   sigset_t signals{};
   std::string path;
-  service::BoundedEnd bounded{"link_listener", std::chrono::seconds(10)};
+  service::BoundedEnd bounded{"link_listener"};
 
   void await() const {
     int number = 0;
@@ -56,7 +56,7 @@ struct End {
   void write(Book& book) {
     const std::lock_guard lock(book.mutex);
     std::ofstream(path) << book.lines.str();
-    bounded.begin(0);
+    bounded.begin(0, std::chrono::seconds(10));
   }
 };
 

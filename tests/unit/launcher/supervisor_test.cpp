@@ -201,6 +201,18 @@ TEST_F(SupervisorTest, the_restarted_one_is_waited_for_as_the_first_was) {
   EXPECT_EQ(restarts("slam"), 1);
 }
 
+TEST_F(SupervisorTest, one_whose_bus_alone_does_not_end_is_not_blamed) {
+  start_all();
+  host.signs["slam"] = host.signs["detector"] = 1;
+  host.unresponsive = {"slam", "detector"};
+  advance(milliseconds(10));
+  supervisor.stop(now, milliseconds(2000), RunOutcome::kInterrupted);
+  host.signs["slam"] = 0;  // it says that it ends
+  advance(milliseconds(3000));
+  EXPECT_THAT(reported, Contains("slam had done its work, but its bus did not end: killed"));
+  EXPECT_THAT(reported, Contains("detector did not end when asked and was killed"));
+}
+
 TEST_F(SupervisorTest, one_that_takes_long_to_end_has_its_grace) {
   start_all();
   host.signs["slam"] = 1;

@@ -65,6 +65,13 @@ TEST(SystemdLink, says_ready_when_the_worker_has_begun_and_when_it_ends) {
   EXPECT_EQ(manager.receive(2000), "STOPPING=1");
 }
 
+TEST(BoundedEnd, says_that_the_work_is_done) {
+  const Manager manager;
+  BoundedEnd end("rtd-slam");
+  end.begin(0, std::chrono::seconds(60));
+  EXPECT_EQ(manager.receive(2000), "STOPPING=1");
+}
+
 TEST(SystemdLink, feeds_the_watchdog_until_the_worker_is_stuck) {
   const Manager manager;
   Manager::watch(90);

@@ -77,7 +77,8 @@ void Supervisor::watch(Child& child, Clock now) {
 /// off after a restart.
 bool Supervisor::hangs(Child& child, Clock now) {
   const std::uint64_t signs = host_.signs_of_life(child.process);
-  if (std::exchange(child.signs_of_life, signs) != signs) {
+  if (const std::uint64_t before = std::exchange(child.signs_of_life, signs); before != signs) {
+    child.work_done = before > 0 && signs == 0;
     child.last_sign = now;
     child.waited.reset();
   }
@@ -167,7 +168,10 @@ void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock n
   if (stopping_) {
     const bool forced = child.killed;
     report(forced ? SupervisorEvent::Kind::kKilled : SupervisorEvent::Kind::kEnded, child,
-           child.plan.name + (forced ? " did not end when asked and was killed" : " ended: " + describe(exit)), exit);
+           child.plan.name + (!forced           ? " ended: " + describe(exit)
+                              : child.work_done ? " had done its work, but its bus did not end: killed"
+                                                : " did not end when asked and was killed"),
+           exit);
     return;
   }
   const bool source = child.plan.role == ServiceRole::kSource || child.plan.role == ServiceRole::kLive;

@@ -104,6 +104,7 @@ class Supervisor {
     int deaths_in_row = 0, restarts = 0;
     Clock started{}, restart_at{};
     bool asked = false, killed = false;
+    bool work_done = false;  ///< it has said that it ends
     Clock kill_at{};
     std::uint64_t signs_of_life = 0;
     Clock last_sign{};
