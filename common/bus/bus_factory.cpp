@@ -10,6 +10,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #include "common/bus/vendors.hpp"
+#include "common/io/printable.hpp"
 #include "common/msg/word_list.hpp"
 
 namespace rtd::bus {
@@ -109,8 +110,8 @@ const Vendor& vendor_of(const BusOptions& options) {
     if (takes_participant_port(options)) require_participant_port(options.domain);
     return vendor;
   }
-  throw BusError("unknown bus '" + options.vendor + "', this build has: " + join_names(available_vendors()) +
-                 " (--dds, RTD_DDS)");
+  throw BusError("unknown bus '" + io::abridged(options.vendor) +
+                 "', this build has: " + join_names(available_vendors()) + " (--dds, RTD_DDS)");
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/robot.hpp"
+#include "common/io/printable.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -61,7 +62,8 @@ std::uint16_t parse_port(const std::string& digits, const std::string& text, con
   std::uint16_t port = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
   if (error == std::errc() && end == digits.data() + digits.size() && port > 0) return port;
-  throw BusError(option + " " + text + ": '" + digits + "' is not a port, write HOST or HOST:PORT with 1..65535");
+  throw BusError(option + " " + text + ": '" + io::abridged(digits) +
+                 "' is not a port, write HOST or HOST:PORT with 1..65535");
 }
 
 }  // namespace
@@ -76,7 +78,7 @@ HostAddress resolve_host(const std::string& text, const std::string& option) {
   hints.ai_socktype = SOCK_DGRAM;
   const int error = name.empty() ? EAI_NONAME : getaddrinfo(name.c_str(), nullptr, &hints, &first);
   if (error != 0)
-    throw BusError(option + " " + text + ": no IPv4 address for '" + name + "' (" + gai_strerror(error) +
+    throw BusError(option + " " + text + ": no IPv4 address for '" + io::abridged(name) + "' (" + gai_strerror(error) +
                    "); write its address, or add the name to /etc/hosts");
   host.address = to_text(first->ai_addr);
   freeaddrinfo(first);

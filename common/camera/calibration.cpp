@@ -12,6 +12,7 @@
 
 #include "common/camera/calibration_forms.hpp"
 #include "common/camera/frame_source.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/msg/sensor_time.hpp"
@@ -61,8 +62,8 @@ const std::vector<std::string>& coefficient_names(geometry::Lens lens) {
 
 SourceError out_of_range(const std::string& where, const std::string& key, const std::string& value) {
   const KeyRule& rule = key_rules().at(key);
-  return SourceError(
-      fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, value, rule.min, rule.max));
+  return SourceError(fmt::format("{}: {} is '{}', allowed is a number in [{:g}, {:g}]", where, key, io::abridged(value),
+                                 rule.min, rule.max));
 }
 
 /// NaN is not.
@@ -79,7 +80,7 @@ std::pair<std::string, double> parse_entry(const io::TextLine& line, const std::
   if (colon == std::string::npos) throw SourceError(where + ": expected 'key: value' with the keys " + kAllowedKeys);
   const std::string key = joined.substr(0, colon), value_text = joined.substr(colon + 1);
   if (key_rules().count(key) == 0) {
-    throw SourceError(where + ": unknown key '" + key + "'; allowed: " + kAllowedKeys +
+    throw SourceError(where + ": unknown key '" + io::abridged(key) + "'; allowed: " + kAllowedKeys +
                       "; forms of other programs that are read: " + kCalibrationForms);
   }
   const std::optional<double> value = io::parse_number(value_text);

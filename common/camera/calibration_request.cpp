@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/camera/frame_source.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::camera {
@@ -16,7 +17,8 @@ namespace {
 double parse_in(const std::string& uri, const std::string& key, const std::string& value, double least, double most) {
   const std::optional<double> number = io::parse_number(value);
   if (number && *number >= least && *number <= most) return *number;
-  throw SourceError(fmt::format("source '{}': {} is '{}', allowed: {:g} to {:g}", uri, key, value, least, most));
+  throw SourceError(fmt::format("source '{}': {} is '{}', allowed: {:g} to {:g}", io::abridged(uri), key,
+                                io::abridged(value), least, most));
 }
 
 std::map<std::string, double> parse_intrinsics(const std::string& uri, const std::string& value) {
@@ -30,7 +32,7 @@ std::map<std::string, double> parse_intrinsics(const std::string& uri, const std
     if (numbers.size() != lines.front().fields.size()) numbers.clear();
   }
   if (numbers.size() != 4 && numbers.size() != kKeys.size()) {
-    throw SourceError("source '" + uri + "': intrinsics is '" + value +
+    throw SourceError("source '" + io::abridged(uri) + "': intrinsics is '" + io::abridged(value) +
                       "'; write fx,fy,cx,cy or fx,fy,cx,cy,width,height in px");
   }
   std::map<std::string, double> intrinsics;

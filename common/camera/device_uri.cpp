@@ -9,8 +9,9 @@
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/source_factory.hpp"
-#include "common/io/text.hpp"
 #include "common/camera/source_schemes.hpp"
+#include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -18,7 +19,8 @@ namespace {
 double parse_mode_value(const std::string& uri, const std::string& key, const std::string& value, double most) {
   const std::optional<double> number = io::parse_number(value);
   if (number && *number >= 1 && *number <= most) return *number;
-  throw SourceError(fmt::format("source '{}': {} is '{}', allowed: 1 to {:g}", uri, key, value, most));
+  throw SourceError(
+      fmt::format("source '{}': {} is '{}', allowed: 1 to {:g}", io::abridged(uri), key, io::abridged(value), most));
 }
 
 void take_parameter(DeviceUri& uri, const std::string& key, const std::string& value) {
@@ -34,8 +36,8 @@ void take_parameter(DeviceUri& uri, const std::string& key, const std::string& v
   } else if (key == "fps") {
     uri.mode.fps = parse_mode_value(uri.text, key, value, kMaxFps);
   } else {
-    throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                      ": knows calibration, tolerance_ms, width, height, fps");
+    throw SourceError("source '" + io::abridged(uri.text) + "': unknown parameter '" + io::abridged(key) + "'; " +
+                      uri.scheme + ": knows calibration, tolerance_ms, width, height, fps");
   }
 }
 

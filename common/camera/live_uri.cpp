@@ -8,6 +8,7 @@
 #include "common/camera/device_uri.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
+#include "common/io/printable.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -53,11 +54,12 @@ LiveOptions parse_live_options(const std::string& text) {
   const std::vector<std::string> topics = split_topics(uri.path);
   bool complete = topics.size() == 2 || topics.size() == 3;
   for (const std::string& topic : topics) complete = complete && topic.size() > 1;
-  if (!complete) throw SourceError("source '" + text + "' does not name its topics: " + kForm);
+  if (!complete) throw SourceError("source '" + io::abridged(text) + "' does not name its topics: " + kForm);
   LiveOptions options;
   options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0]),
                     info_beside(topics[1])};
-  if (topics[0] == topics[1]) throw SourceError("source '" + text + "': colour and depth are one topic: " + kForm);
+  if (topics[0] == topics[1])
+    throw SourceError("source '" + io::abridged(text) + "': colour and depth are one topic: " + kForm);
   for (const auto& [key, value] : uri.parameters) {
     if (key == "calibration") {
       options.calibration_file = value;
@@ -68,7 +70,7 @@ LiveOptions parse_live_options(const std::string& text) {
     } else if (key == "depth_info") {
       options.topics.depth_info = absolute(value);
     } else {
-      throw SourceError("source '" + text + "': unknown parameter '" + key +
+      throw SourceError("source '" + io::abridged(text) + "': unknown parameter '" + io::abridged(key) +
                         "'; ros2: knows calibration, depth_info, registered, tolerance_ms");
     }
   }

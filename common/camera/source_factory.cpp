@@ -14,6 +14,7 @@
 #include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/camera/unread_forms.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -26,7 +27,7 @@ namespace {
 /// Video nodes give depth that is not registered to colour, and no calibration that could register it.
 void refuse_video_nodes(const std::string& text) {
   if (!text.starts_with("v4l2:")) return;
-  throw SourceError("source '" + text +
+  throw SourceError("source '" + io::abridged(text) +
                     "': V4L2 cameras give no depth that is registered to colour; use the camera through openni2:, "
                     "realsense-dds: or its ROS 2 driver (ros2:COLOR,DEPTH)");
 }
@@ -39,7 +40,7 @@ SourceUri parse_source_uri(const std::string& text) {
   if (const std::string advice = advice_for_file(text.substr(0, text.find('?'))); !advice.empty())
     throw SourceError(advice);
   if (colon == std::string::npos || colon == 0) {
-    throw SourceError("source '" + text + "' has no scheme; write " + all_source_forms());
+    throw SourceError("source '" + io::abridged(text) + "' has no scheme; write " + all_source_forms());
   }
   SourceUri uri{text, text.substr(0, colon), text.substr(colon + 1), {}};
   const std::size_t question = uri.path.find('?');
@@ -49,10 +50,11 @@ SourceUri parse_source_uri(const std::string& text) {
   for (std::string part; std::getline(parameters, part, '&');) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw SourceError("source '" + text + "': parameter '" + part + "' is not key=value");
+      throw SourceError("source '" + io::abridged(text) + "': parameter '" + io::abridged(part) + "' is not key=value");
     }
     if (!uri.parameters.emplace(part.substr(0, equals), part.substr(equals + 1)).second) {
-      throw SourceError("source '" + text + "': parameter '" + part.substr(0, equals) + "' occurs twice");
+      throw SourceError("source '" + io::abridged(text) + "': parameter '" + io::abridged(part.substr(0, equals)) +
+                        "' occurs twice");
     }
   }
   return uri;
@@ -62,14 +64,15 @@ std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value
   constexpr double kMaxMs = 1000;
   const std::optional<double> ms = io::parse_number(value);
   if (!ms || !(*ms > 0) || *ms > kMaxMs) {
-    throw SourceError("source '" + uri + "': tolerance_ms is '" + value + "', allowed: more than 0, at most 1000");
+    throw SourceError("source '" + io::abridged(uri) + "': tolerance_ms is '" + io::abridged(value) +
+                      "', allowed: more than 0, at most 1000");
   }
   return static_cast<std::int64_t>(*ms * 1e6);
 }
 
 bool parse_flag(const std::string& uri, const std::string& key, const std::string& value) {
   if (value != "0" && value != "1") {
-    throw SourceError("source '" + uri + "': " + key + " is 0 or 1, not '" + value + "'");
+    throw SourceError("source '" + io::abridged(uri) + "': " + key + " is 0 or 1, not '" + io::abridged(value) + "'");
   }
   return value == "1";
 }
@@ -111,16 +114,18 @@ std::unique_ptr<FrameSource> make_folder_source(const SourceUri& uri) {
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
     } else if (!take_calibration_parameter(options.calibration, uri.text, key, value)) {
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                        ": knows masks, tolerance_ms, fps, " + kCalibrationParameters);
+      throw SourceError("source '" + io::abridged(uri.text) + "': unknown parameter '" + io::abridged(key) + "'; " +
+                        uri.scheme + ": knows masks, tolerance_ms, fps, " + kCalibrationParameters);
     }
   }
-  if (uri.path.empty()) throw SourceError("source '" + uri.text + "' needs a folder: " + uri.scheme + ":FOLDER");
+  if (uri.path.empty())
+    throw SourceError("source '" + io::abridged(uri.text) + "' needs a folder: " + uri.scheme + ":FOLDER");
   return std::make_unique<FolderSource>(uri.text, uri.path, std::move(options));
 }
 
 RecordingOptions recording_options(const SourceUri& uri) {
-  if (uri.path.empty()) throw SourceError("source '" + uri.text + "' needs a file: " + uri.scheme + ":FILE");
+  if (uri.path.empty())
+    throw SourceError("source '" + io::abridged(uri.text) + "' needs a file: " + uri.scheme + ":FILE");
   RecordingOptions options;
   const std::map<std::string, std::string*> known = {{"color", &options.topics.color},
                                                      {"depth", &options.topics.depth},
@@ -136,8 +141,9 @@ RecordingOptions recording_options(const SourceUri& uri) {
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
     } else {
-      throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'; " + uri.scheme +
-                        ": knows color, depth, info, depth_info, registered, tolerance_ms, " + kCalibrationParameters);
+      throw SourceError("source '" + io::abridged(uri.text) + "': unknown parameter '" + io::abridged(key) + "'; " +
+                        uri.scheme + ": knows color, depth, info, depth_info, registered, tolerance_ms, " +
+                        kCalibrationParameters);
     }
   }
   return options;
@@ -194,13 +200,13 @@ std::unique_ptr<FrameSource> make_source(const std::string& text) {
   if (is_recording(uri)) return make_recording_source(uri);
   if (is_live(text)) {
     throw SourceError(
-        "source '" + text +
+        "source '" + io::abridged(text) +
         "' is a running camera: only `rtd run` and rtd-camera play it; record it first (rtd record) and use mcap:FILE");
   }
   std::vector<std::string> known;
   for (const SourceScheme& scheme : kSourceSchemes) known.emplace_back(scheme.name);
   std::ranges::sort(known);
-  throw SourceError("source '" + text + "': unknown scheme '" + uri.scheme +
+  throw SourceError("source '" + io::abridged(text) + "': unknown scheme '" + io::abridged(uri.scheme) +
                     "'; known: " + msg::word_list(known, ", "));
 }
 

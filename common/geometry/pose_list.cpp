@@ -8,6 +8,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::geometry {
@@ -24,8 +25,8 @@ class NotFinite : public std::invalid_argument {
 
 double finite(const std::string& field) {
   const std::optional<double> value = io::parse_number(field);
-  if (!value) throw std::invalid_argument("'" + field + "' is not a number");
-  if (!std::isfinite(*value)) throw NotFinite("'" + field + "' is not a finite number");
+  if (!value) throw std::invalid_argument("'" + io::abridged(field) + "' is not a number");
+  if (!std::isfinite(*value)) throw NotFinite("'" + io::abridged(field) + "' is not a finite number");
   return *value;
 }
 
@@ -121,7 +122,7 @@ std::int64_t to_ns(const std::string& stamp, const Unit& unit) {
   const bool plain = stamp.find_first_not_of("0123456789.") == std::string::npos;
   if (plain && error == std::errc() && end == digits.data() + digits.size()) return stamp_ns;
   const double value = *io::parse_number(stamp) * std::pow(10, 9 - unit.digits);
-  if (std::abs(value) > 9.2e18) throw std::invalid_argument("stamp '" + stamp + "' is out of range");
+  if (std::abs(value) > 9.2e18) throw std::invalid_argument("stamp '" + io::abridged(stamp) + "' is out of range");
   return std::llround(value);
 }
 

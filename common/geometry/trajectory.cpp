@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "common/geometry/pose_list.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/stamps.hpp"
 
@@ -27,9 +28,9 @@ constexpr double kMaxQuaternionError = 0.05;  // of the length; TUM's own ground
 
 double parse_finite(const std::string& text) {
   const std::optional<double> value = io::parse_number(text);
-  if (!value) throw std::invalid_argument("'" + text + "' is not a number");
+  if (!value) throw std::invalid_argument("'" + io::abridged(text) + "' is not a number");
   if (!std::isfinite(*value)) {
-    throw std::invalid_argument("'" + text + "' is not a finite number; leave such rows out");
+    throw std::invalid_argument("'" + io::abridged(text) + "' is not a finite number; leave such rows out");
   }
   return *value;
 }

@@ -10,6 +10,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "common/io/printable.hpp"
+
 namespace rtd::io {
 namespace {
 
@@ -120,10 +122,10 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
 
 std::int64_t parse_stamp_ns(const std::string& text) {
   const std::optional<double> seconds = parse_number(text);
-  if (!seconds) throw std::invalid_argument("'" + text + "' is not a number");
-  if (!std::isfinite(*seconds)) throw StampOutOfRange("stamp '" + text + "' is not a finite number");
+  if (!seconds) throw std::invalid_argument("'" + io::abridged(text) + "' is not a number");
+  if (!std::isfinite(*seconds)) throw StampOutOfRange("stamp '" + io::abridged(text) + "' is not a finite number");
   if (std::abs(*seconds) > kMaxStampS) {
-    throw StampOutOfRange("stamp '" + text + "' is out of range; stamps are in seconds, not nanoseconds");
+    throw StampOutOfRange("stamp '" + io::abridged(text) + "' is out of range; stamps are in seconds, not nanoseconds");
   }
   const std::optional<std::int64_t> exact = parse_plain_decimal_ns(text);
   return exact ? *exact : std::llround(*seconds * static_cast<double>(kNsPerSecond));

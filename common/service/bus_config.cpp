@@ -14,6 +14,7 @@
 #include <iterator>
 #include <ranges>
 
+#include "common/io/printable.hpp"
 #include "common/msg/services.hpp"
 #include "common/security/keystore_layout.hpp"
 #include "common/service/dds_environment.hpp"
@@ -46,7 +47,7 @@ void load_profile(ConfigBinder& binder, const std::string& profile) {
   std::ifstream file(profile);
   if (is_file_name(profile) && file && !std::filesystem::is_directory(profile))
     return binder.load_text({std::istreambuf_iterator<char>(file), {}}, profile, config_sections());
-  throw ConfigError(fmt::format("--profile {}: {}, there are {} (or a YAML file)", profile,
+  throw ConfigError(fmt::format("--profile {}: {}, there are {} (or a YAML file)", io::abridged(profile),
                                 is_file_name(profile) ? "no such file" : "no such profile", profile_names()));
 }
 

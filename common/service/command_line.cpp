@@ -17,6 +17,7 @@
 #include <iostream>
 #include <memory>
 #include <sstream>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -77,9 +78,21 @@ std::string with_advice(const CLI::App& command, const std::string& word) {
   return near.empty() ? word : word + " (did you mean " + near + "?)";
 }
 
-}  // namespace
+/// CLI11 quotes what was given, all of it: the words of the command line, or what is between their '=' and ','.
+std::string with_short_values(std::string message, int argc, const char* const* argv) {
+  constexpr std::size_t kShort = 120;
+  for (int i = 1; i < argc && message.size() > kShort; ++i) {
+    std::string_view value = argv[i];
+    while (value.size() > kShort) {
+      if (const std::size_t place = message.find(value); place != std::string::npos)
+        message.replace(place, value.size(), io::abridged(value));
+      value.remove_prefix(std::min(value.find_first_of("=,"), value.size() - 1) + 1);
+    }
+  }
+  return message;
+}
 
-void parse(CLI::App& app, int argc, char** argv) {
+void parse_words(CLI::App& app, int argc, const char* const* argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError&) {
@@ -92,14 +105,25 @@ void parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+}  // namespace
+
+void parse(CLI::App& app, int argc, char** argv) {
+  try {
+    parse_words(app, argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const std::string shown = with_short_values(error.what(), argc, argv);
+    if (shown == error.what()) throw;
+    throw CLI::ParseError(shown, error.get_exit_code());
+  }
+}
+
 int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
-  hold_standard_streams();
+  prepare_standard_streams();
   try {
     parse(app, argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
-  const io::PrintableOutput out(std::cout);  // names and texts of other programs are among what tools print
   return work();
 }
 
@@ -149,7 +173,7 @@ Progress::Progress(std::ostream& err, std::string work, std::uint64_t total)
       interactive_(&err == &std::cerr && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (interactive_ && shown_) err_ << "\r\033[K" << std::flush;
+  if (interactive_ && shown_) io::rewrite_terminal_line("");
 }
 
 void Progress::reach(std::uint64_t done) {
@@ -158,7 +182,11 @@ void Progress::reach(std::uint64_t done) {
   if (now < next_) return;
   next_ = now + (interactive_ ? kRewriteEvery : kRepeatEvery);
   const std::string line = progress_line(work_, done_, total_, std::chrono::duration<double>(now - started_).count());
-  err_ << (interactive_ ? "\r\033[K" + line : line + '\n') << std::flush;
+  if (interactive_) {
+    io::rewrite_terminal_line(line);
+  } else {
+    err_ << line << std::endl;
+  }
   shown_ = true;
 }
 

@@ -11,7 +11,6 @@
 #include <ostream>
 #include <string>
 
-#include "common/io/printable.hpp"
 #include "common/service/exit_code.hpp"
 
 namespace CLI {
@@ -43,7 +42,7 @@ int report_errors(const std::string& program, std::ostream& err, const std::func
   try {
     return work();
   } catch (const std::exception& error) {
-    err << program << ": " << io::printable(error.what(), io::LineEnds::kKeep) << '\n';
+    err << program << ": " << error.what() << '\n';
     return (... || (dynamic_cast<const Usage*>(&error) != nullptr)) ? kUsageOrConfig : kRunFailed;
   }
 }

@@ -16,6 +16,7 @@
 #include <iterator>
 #include <limits>
 
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::service {
@@ -94,9 +95,10 @@ class Flattener {
     for (const auto& child : node) {
       if (depth >= kDeepest || ++nodes_ > kMaxNodes)
         throw ConfigError(fmt::format("{}: section '{}' has too many sections within it: remove anchors and aliases",
-                                      origin_, prefix.substr(0, 60)));
+                                      origin_, io::abridged(prefix)));
       if (!child.first.IsScalar())
-        throw ConfigError(fmt::format("{}: a key below '{}' is not a name: write 'key: value'", origin_, prefix));
+        throw ConfigError(
+            fmt::format("{}: a key below '{}' is not a name: write 'key: value'", origin_, io::abridged(prefix)));
       const std::string key = prefix + child.first.Scalar();
       if (skips_(key)) continue;
       const bool is_key = std::find(known_.begin(), known_.end(), key) != known_.end();
@@ -261,24 +263,27 @@ void ConfigBinder::set(const std::string& key, const std::string& yaml_value, co
   if (setting == nullptr) {
     const std::string near = nearest_name(key, keys());
     throw ConfigError(
-        fmt::format("{}: unknown key '{}'{}", origin, key,
+        fmt::format("{}: unknown key '{}'{}", origin, io::abridged(key),
                     near.empty() ? ": see --print-config for all keys" : fmt::format(", did you mean '{}'?", near)));
   }
   if (!setting->read(yaml_value))
-    throw ConfigError(fmt::format("{}: {} = {} is not allowed: use {}", origin, key, yaml_value, setting->wanted));
+    throw ConfigError(
+        fmt::format("{}: {} = {} is not allowed: use {}", origin, key, io::abridged(yaml_value), setting->wanted));
 }
 
 void ConfigBinder::set(const GivenOption& option) {
   const Setting* const setting = find(option.key);
   if (setting == nullptr || !setting->take(option.words))
-    throw ConfigError(fmt::format("{} {} is not allowed: use {}", option.flag, fmt::join(option.words, ","),
+    throw ConfigError(fmt::format("{} {} is not allowed: use {}", option.flag,
+                                  io::abridged(fmt::format("{}", fmt::join(option.words, ","))),
                                   setting == nullptr ? "another option" : setting->wanted));
 }
 
 void ConfigBinder::set(const std::string& assignment, const std::vector<std::string>& other_sections) {
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw ConfigError(fmt::format("--set {}: write key=value, for example --set filter.mode=rtd", assignment));
+    throw ConfigError(
+        fmt::format("--set {}: write key=value, for example --set filter.mode=rtd", io::abridged(assignment)));
   }
   const std::string key = assignment.substr(0, equals);
   if (!is_of_others(key, other_sections)) set(key, assignment.substr(equals + 1), "--set");
@@ -287,9 +292,11 @@ void ConfigBinder::set(const std::string& assignment, const std::vector<std::str
 void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& other_sections) {
   std::error_code unreadable;
   if (std::filesystem::is_directory(path, unreadable))
-    throw ConfigError(fmt::format("config file '{}' is a folder: name a file in it with --config", path));
+    throw ConfigError(fmt::format("config file '{}' is a folder: name a file in it with --config", io::abridged(path)));
   std::ifstream file(path);
-  if (!file) throw ConfigError(fmt::format("config file '{}' cannot be read: check the path given to --config", path));
+  if (!file)
+    throw ConfigError(
+        fmt::format("config file '{}' cannot be read: check the path given to --config", io::abridged(path)));
   load_text({std::istreambuf_iterator<char>(file), {}}, path, other_sections);
 }
 
@@ -299,7 +306,7 @@ void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,
   try {
     root = YAML::Load(yaml);
   } catch (const YAML::Exception& error) {
-    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", origin, error.mark.line + 1, error.msg));
+    throw ConfigError(fmt::format("{}:{}: not valid YAML: {}", origin, error.mark.line + 1, io::abridged(error.msg)));
   }
   if (root.IsNull()) return;
   if (!root.IsMap()) throw ConfigError(fmt::format("{}: expected sections such as 'filter:' at the top level", origin));

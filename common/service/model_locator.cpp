@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "common/io/printable.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_table.hpp"
 
@@ -82,8 +83,8 @@ ModelSearch find(const Wanted& wanted, const EnvironmentReader& environment) {
   if (configured.find('/') != std::string::npos) {
     if (is_file(configured)) return {configured, {}};
     return {{},
-            wanted.missing + ": " + wanted.key + " is '" + configured + "', which is no file; correct it, or " +
-                advice(configured)};
+            wanted.missing + ": " + wanted.key + " is '" + io::abridged(configured) +
+                "', which is no file; correct it, or " + advice(configured)};
   }
   const std::vector<std::string> names = names_of(configured);
   std::vector<std::string> looked;

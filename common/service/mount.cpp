@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <sstream>
 
+#include "common/io/printable.hpp"
 #include "common/service/config.hpp"
 
 namespace rtd::service {
@@ -34,12 +35,12 @@ Eigen::Isometry3d parse_mount(const std::string& text, const std::string& key) {
   if (!complete || std::abs(q.norm() - 1) > kUnitTolerance || t.norm() > kFarthestMount_m) {
     const bool of_camera = key == "slam.base.camera";
     if (!of_camera) {
-      throw ConfigError(key + "=" + text +
+      throw ConfigError(key + "=" + io::abridged(text) +
                         ": must be x,y,z,qx,qy,qz,qw: where the IMU is, m, and how its axes are turned, a "
                         "quaternion of length 1. In the optical frame itself: 0,0,0,0,0,0,1");
     }
     throw ConfigError(
-        "slam.base.camera=" + text +
+        "slam.base.camera=" + io::abridged(text) +
         ": must be x,y,z,qx,qy,qz,qw: where the camera is in the base, m, and how its optical frame (x right, y down, "
         "z "
         "forward) is turned, a quaternion of length 1. A camera 0.4 m above the base that looks forward: "

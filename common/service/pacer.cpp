@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "common/io/printable.hpp"
 #include "common/service/config.hpp"
 
 namespace rtd::service {
@@ -17,7 +18,8 @@ constexpr const char* kPaces[] = {"realtime", "asap", "lockstep"};  // by Pace
 
 Pace parse_pace(const std::string& text) {
   const auto name = std::find(std::begin(kPaces), std::end(kPaces), text);
-  if (name == std::end(kPaces)) throw ConfigError("unknown pace '" + text + "': use realtime, asap or lockstep");
+  if (name == std::end(kPaces))
+    throw ConfigError("unknown pace '" + io::abridged(text) + "': use realtime, asap or lockstep");
   return static_cast<Pace>(name - std::begin(kPaces));
 }
 

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "common/io/printable.hpp"
+
 namespace rtd::vision {
 namespace {
 
@@ -22,7 +24,7 @@ MotionLevel parse_level(const std::string& class_name, const std::string& text) 
   if (text == "high") return MotionLevel::kHigh;
   if (text == "medium") return MotionLevel::kMedium;
   if (text == "low") return MotionLevel::kLow;
-  throw std::invalid_argument("motion level of class '" + class_name + "' is '" + text +
+  throw std::invalid_argument("motion level of class '" + io::abridged(class_name) + "' is '" + io::abridged(text) +
                               "': use high, medium, low or none");
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
@@ -50,7 +51,7 @@ bool asks_for_image_table(int argc, const char* const* argv) {
   return argc > 1 && std::string_view(argv[1]) == "--image";
 }
 
-int print_image_table(int argc, const char* const* argv) {
+int print_image_table(int argc, char** argv) {
   CLI::App app{"Prints what is found in image files", "rtd-detector"};
   std::vector<std::string> files;
   std::string model_name;
@@ -62,21 +63,17 @@ int print_image_table(int argc, const char* const* argv) {
   service::bind_engine(binder, config.engine);
   binder.add_options(app, given);
   app.add_option("--confidence", config.decode.confidence_threshold, "Least score")->check(CLI::Range(0.01, 1.0));
-  try {
-    app.parse(argc, argv);
-    for (const service::GivenOption& option : given) binder.set(option);
-    const service::ModelSearch model = service::find_model(model_name, service::process_environment());
-    if (!model) throw ModelError(model.message);
-    config.model_path = model.path;
-    config.onnxruntime = service::find_onnxruntime();
-    Detector detector(config);
-    return print_files(detector, files);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? service::kOk : service::kUsageOrConfig;
-  } catch (const std::runtime_error& error) {
-    std::cerr << "rtd-detector: " << error.what() << '\n';
-    return service::kUsageOrConfig;
-  }
+  return service::run_command(app, argc, argv, [&] {
+    return service::report_errors<std::runtime_error>("rtd-detector", std::cerr, [&] {
+      for (const service::GivenOption& option : given) binder.set(option);
+      const service::ModelSearch model = service::find_model(model_name, service::process_environment());
+      if (!model) throw ModelError(model.message);
+      config.model_path = model.path;
+      config.onnxruntime = service::find_onnxruntime();
+      Detector detector(config);
+      return print_files(detector, files);
+    });
+  });
 }
 
 }  // namespace rtd::detector

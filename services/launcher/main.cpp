@@ -92,7 +92,7 @@ std::string unknown_command(const std::string& name) {
   for (const ExternalCommand& command : commands()) known.emplace_back(command.name);
   for (const std::string& other : other_commands()) known.push_back(other);
   const std::string near = service::nearest_name(name, known);
-  return "'" + name + "' is not an rtd command" +
+  return "'" + io::abridged(name) + "' is not an rtd command" +
          (near.empty() ? "; 'rtd --help' lists all commands" : ", did you mean '" + near + "'?");
 }
 
@@ -277,7 +277,6 @@ int print_settings(const service::ConfigSources& sources) {
 }
 
 int dispatch(const CLI::App& app, const Requests& requests) {
-  const io::PrintableOutput out(std::cout);
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
   if (app.got_subcommand("config")) return print_settings(requests.config);
@@ -327,6 +326,6 @@ int front(int argc, char** argv) {
 }  // namespace rtd::launcher
 
 int main(int argc, char** argv) {
-  rtd::service::hold_standard_streams();
+  rtd::service::prepare_standard_streams();
   return rtd::launcher::front(argc, argv);
 }

@@ -15,6 +15,7 @@
 #include "common/concurrency/thread_priority.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/named_files.hpp"
+#include "common/io/printable.hpp"
 #include "common/mcap/records.hpp"
 #include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
@@ -277,7 +278,7 @@ void RecordingSession::show_progress(std::int64_t now_ns, const TopicCounts& tot
   progress_ns_ = now_ns;
   progress_bytes_ = bytes;
   if (interactive_) {
-    std::cerr << "\r\x1b[K" << text << '\r' << std::flush;  // a log line overwrites it
+    io::rewrite_terminal_line(text);
   } else {
     SPDLOG_INFO("event=progress {}", text);
   }
@@ -323,7 +324,7 @@ service::ExitCode RecordingSession::conclude() {
   report.failure = failure_;
   for (std::size_t i = 0; i < report.files.size(); ++i) report.names.push_back(files_.file(i).filename());
   write_metadata(bag_metadata_text(report.names, report.files, report.topics));
-  if (interactive_) std::cerr << "\r\x1b[K";
+  if (interactive_) io::rewrite_terminal_line("");
   for (const RecordedTopic& topic : report.topics) {
     SPDLOG_INFO("event=topic topic={} messages={} lost_in_transit={} lost_in_queue={}", topic.name,
                 topic.counts.written, topic.counts.lost_in_transit, topic.counts.lost_in_queue);

@@ -7,6 +7,7 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/service/command_line.hpp"
@@ -42,7 +43,8 @@ Destination parse_destination(const std::string& text) {
   }
   if (text.ends_with(io::kMcapExtension)) return {Format::kMcap, text};
   if (text.starts_with("bag:") || text.ends_with(io::kBagExtension)) {
-    throw SourceError("destination '" + text + "': bags are read, not written; write FILE.mcap or tum:DIR");
+    throw SourceError("destination '" + io::abridged(text) +
+                      "': bags are read, not written; write FILE.mcap or tum:DIR");
   }
   return {Format::kTum, text};
 }

@@ -7,7 +7,8 @@
 
 #include <algorithm>
 #include <array>
-#include <iostream>
+
+#include "common/io/printable.hpp"
 
 namespace rtd::replay {
 namespace {
@@ -71,14 +72,14 @@ StatusLine::StatusLine(std::int64_t start_ns, std::int64_t end_ns)
     : start_ns_(start_ns), end_ns_(end_ns), interactive_(isatty(STDERR_FILENO) == 1) {}
 
 StatusLine::~StatusLine() {
-  if (interactive_) std::cerr << "\r\033[K" << std::flush;
+  if (interactive_) io::rewrite_terminal_line("");
 }
 
 void StatusLine::show(const PlayState& state, std::int64_t now_ns) {
   if (!interactive_ || (now_ns < next_ns_ && state.paused == paused_)) return;
   next_ns_ = now_ns + kRewriteEveryNs;
   paused_ = state.paused;
-  std::cerr << "\r\033[K" << status_text(state, start_ns_, end_ns_) << std::flush;
+  io::rewrite_terminal_line(status_text(state, start_ns_, end_ns_));
 }
 
 }  // namespace rtd::replay

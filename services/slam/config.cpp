@@ -14,6 +14,7 @@
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/io/fd_writing.hpp"
+#include "common/io/printable.hpp"
 #include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
@@ -108,7 +109,8 @@ SlamConfig core_config(const ServiceConfig& config) {
   try {
     core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
   } catch (const VocabularyError& error) {
-    throw service::ConfigError("slam.place.vocabulary: '" + config.vocabulary_file + "': " + error.what());
+    throw service::ConfigError("slam.place.vocabulary: '" + io::abridged(config.vocabulary_file) +
+                               "': " + error.what());
   }
   return core;
 }

@@ -4,32 +4,22 @@
 
 #include <dds/ddsrt/log.h>
 
-#include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "common/bus/cyclonedds/domain_config.hpp"
 #include "common/bus/cyclonedds/local_sockets.hpp"
 #include "common/bus/host/port_check.hpp"
+#include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
 #include "common/security/keystore_layout.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr int kLinesAtOnce = 10;
-constexpr std::chrono::seconds kPeriod{10};
-constexpr std::size_t kLongestLine = 240;
-
 std::string text_of(const dds_log_data_t& line) {
-  std::string text(line.message, std::min<std::size_t>(line.size, kLongestLine));
-  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return text;
+  return shown_line({line.message, line.size});
 }
 
 /// That a domain of this process is kept to this host: that its network takes no multicast, while the cable is out, is
@@ -41,36 +31,19 @@ bool is_no_loss(const std::string& line) {
 }
 
 /// Cyclone calls its sink from any thread, one call at a time or not.
-struct Limit {
-  std::mutex mutex;
-  Clock::time_point begin;
-  int lines = 0;
-};
-
 void print_some(void* self, const dds_log_data_t* line) {
-  Limit& limit = *static_cast<Limit*>(self);
   const std::string text = text_of(*line);
-  if (is_no_loss(text)) return;
-  const std::lock_guard lock(limit.mutex);
-  const Clock::time_point now = Clock::now();
-  if (now - limit.begin > kPeriod) {
-    if (limit.lines > kLinesAtOnce) {
-      std::fprintf(stderr, "Cyclone DDS: %d more lines like these\n", limit.lines - kLinesAtOnce);
-    }
-    limit.begin = now;
-    limit.lines = 0;
-  }
-  if (++limit.lines <= kLinesAtOnce) std::fprintf(stderr, "Cyclone DDS: %s\n", text.c_str());
+  if (!is_no_loss(text)) static_cast<LibraryLog*>(self)->print(text);
 }
 
 /// Captures Cyclone's errors while it lives: they say why a call failed. Otherwise Cyclone's warnings and errors go to
-/// stderr in short lines, at most ten in ten seconds: it has one for each malformed packet.
+/// stderr.
 class LogCapture {
  public:
   LogCapture() { dds_set_log_sink(note, this); }
   ~LogCapture() {
-    static Limit limit;
-    dds_set_log_sink(print_some, &limit);
+    static LibraryLog log("Cyclone DDS");
+    dds_set_log_sink(print_some, &log);
   }
   LogCapture(const LogCapture&) = delete;
   LogCapture& operator=(const LogCapture&) = delete;

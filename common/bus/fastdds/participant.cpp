@@ -13,10 +13,10 @@
 #include <utility>
 
 #include <fastdds/dds/log/Log.hpp>
-#include <fastdds/dds/log/StdoutErrConsumer.hpp>
 
 #include "common/bus/fastdds/c_library.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
+#include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/ros_graph.hpp"
 
@@ -36,6 +36,18 @@ constexpr char kNoFreePort[] =
     "processes of this domain have been restarted";
 constexpr std::uint32_t kMinSegmentMib = 2;  // below it what does not fit is repaired in 20 ms instead
 
+/// Fast DDS's own consumers write colours, and what they quote as it is.
+class LogLines final : public dds::LogConsumer {
+ public:
+  void Consume(const dds::Log::Entry& entry) override {
+    const char* const category = entry.context.category;
+    log_.print(std::string(category != nullptr ? category : "") + ": " + entry.message);
+  }
+
+ private:
+  LibraryLog log_{"Fast DDS"};
+};
+
 /// Fast DDS logs to stdout by default, which belongs to our programs' results. Two participants of one process send
 /// each other their liveliness by direct calls by default, each under its own lock: when both do so at once, they wait
 /// for each other forever.
@@ -43,7 +55,7 @@ void configure_library_once() {
   static std::once_flag once;
   std::call_once(once, [] {
     dds::Log::ClearConsumers();
-    dds::Log::RegisterConsumer(std::make_unique<dds::StdoutErrConsumer>());
+    dds::Log::RegisterConsumer(std::make_unique<LogLines>());
     dds::Log::SetVerbosity(dds::Log::Kind::Error);
     turn_off_direct_calls();
   });

@@ -12,6 +12,7 @@
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/color_encodings.hpp"
+#include "common/io/printable.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
 
@@ -103,7 +104,8 @@ ImageRead decode_depth_codec(const std::string& format, ros::Bytes bytes, const 
   if (codec.find_first_not_of(' ') == std::string::npos || codec.find("png") != std::string::npos) {
     return decode_depth(bytes, name);
   }
-  throw SourceError(name + " is encoded as '" + format + "', which cannot be read; readable: " + kDepthCodecs);
+  throw SourceError(name + " is encoded as '" + io::abridged(format) +
+                    "', which cannot be read; readable: " + kDepthCodecs);
 }
 
 /// From ROS's compressed_depth_image_transport: 12 bytes (a code of the format, quantisation parameters a and b), then
@@ -124,7 +126,8 @@ const std::map<std::string, int> kDepthTypes = {{"16UC1", CV_16UC1}, {"mono16", 
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 
 SourceError unsupported(const RecordedMessage& message, const std::string& encoding, const std::string& known) {
-  return SourceError(message.topic + " is encoded as '" + encoding + "', which cannot be read; readable: " + known);
+  return SourceError(message.topic + " is encoded as '" + io::abridged(encoding) +
+                     "', which cannot be read; readable: " + known);
 }
 
 ImageRead refuse(SkipReason reason, const RecordedMessage& message, const std::string& cause) {
@@ -214,7 +217,8 @@ void take_distortion(const msg::CameraInfo& info, const std::string& origin,
   const std::size_t known = std::min<std::size_t>(fisheye ? 4 : parameters.distortion.size(), info.d.size());
   if (!std::ranges::all_of(std::span(info.d).subspan(known), is_zero)) {
     throw SourceError(
-        origin + ": distortion model '" + info.distortion_model + "' with " + std::to_string(info.d.size()) +
+        origin + ": distortion model '" + io::abridged(info.distortion_model) + "' with " +
+        std::to_string(info.d.size()) +
         " values; known: plumb_bob (k1 k2 p1 p2 k3), rational_polynomial (... k4 k5 k6), equidistant (k1 k2 "
         "k3 k4)" +
         kFix);

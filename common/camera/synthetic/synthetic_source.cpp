@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/camera/synthetic/texture.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
 
@@ -31,15 +32,16 @@ synthetic::SceneSpec find_scene(const SourceUri& uri) {
     if (scene.name == uri.path) return scene;
     names += (names.empty() ? "" : ", ") + scene.name;
   }
-  throw SourceError("source '" + uri.text + "': unknown scene '" + uri.path + "'; known: " + names);
+  throw SourceError("source '" + io::abridged(uri.text) + "': unknown scene '" + io::abridged(uri.path) +
+                    "'; known: " + names);
 }
 
 double number_in(const SourceUri& uri, const std::string& key, const std::string& text, double min, double max) {
   const std::optional<double> value = io::parse_number(text);
   if (value && *value >= min && *value <= max) return *value;
   std::ostringstream message;
-  message << "source '" << uri.text << "': " << key << " is '" << text << "', allowed is a number in [" << min << ", "
-          << max << "]";
+  message << "source '" << io::abridged(uri.text) << "': " << key << " is '" << io::abridged(text)
+          << "', allowed is a number in [" << min << ", " << max << "]";
   throw SourceError(message.str());
 }
 
@@ -162,7 +164,8 @@ const Named& choose(const SourceUri& uri, const std::string& key, const std::vec
     if (choice.name == name) return choice;
     names += (names.empty() ? "" : ", ") + choice.name;
   }
-  throw SourceError("source '" + uri.text + "': " + key + " is '" + name + "', allowed are " + names);
+  throw SourceError("source '" + io::abridged(uri.text) + "': " + key + " is '" + io::abridged(name) +
+                    "', allowed are " + names);
 }
 
 [[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
@@ -172,7 +175,7 @@ const Named& choose(const SourceUri& uri, const std::string& key, const std::vec
   const std::string near = io::nearest_name(key, keys);
   std::string known;
   for (const std::string& each : keys) known += (known.empty() ? "" : ", ") + each;
-  throw SourceError("source '" + uri.text + "': unknown parameter '" + key + "'" +
+  throw SourceError("source '" + io::abridged(uri.text) + "': unknown parameter '" + io::abridged(key) + "'" +
                     (near.empty() ? "" : ", did you mean '" + near + "'?") + "; known: " + known);
 }
 
@@ -224,7 +227,8 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
     known->assign(number_in(uri, key, value, known->min, known->max));
   }
   if (options.wheels && (options.scene.motion != synthetic::CameraMotion::kDriving || options.scene.corridor)) {
-    throw SourceError("source '" + uri.text + "': wheel=1 needs a camera that drives on the floor; add motion=driving" +
+    throw SourceError("source '" + io::abridged(uri.text) +
+                      "': wheel=1 needs a camera that drives on the floor; add motion=driving" +
                       (options.scene.corridor ? " and take a scene in the room" : ""));
   }
   return options;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/io/printable.hpp"
+
 namespace rtd::launcher {
 namespace {
 
@@ -53,7 +55,8 @@ std::vector<std::string> reason_lines(const std::vector<std::string>& tail) {
   return tail;
 }
 
-void ServiceLogs::add(const std::string& service, const std::string& line) {
+void ServiceLogs::add(const std::string& service, const std::string& printed) {
+  const std::string line = io::printable(printed, io::LineEnds::kKeep);  // libraries print, too
   Log& log = logs_[service];
   try {
     if (!log.file) log.file.emplace(path(service), io::IfExists::kReplace);

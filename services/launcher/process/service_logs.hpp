@@ -40,7 +40,7 @@ class ServiceLogs {
  public:
   ServiceLogs(std::string folder, Terminal& terminal) : folder_(std::move(folder)), terminal_(terminal) {}
 
-  void add(const std::string& service, const std::string& line);
+  void add(const std::string& service, const std::string& printed);
   /// The service's own reason for its end; empty when it was already shown.
   std::vector<std::string> reason(const std::string& service) const;
   std::vector<std::string> tail(const std::string& service) const;

@@ -12,6 +12,7 @@
 #include "common/bus/host/port_check.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/printable.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
@@ -35,7 +36,7 @@ void check_sections(const std::vector<std::string>& overrides) {
     const std::string section = assignment.substr(0, assignment.find_first_of(".="));
     if (std::ranges::count(sections, section) > 0) continue;
     const std::string near = service::nearest_name(section, sections);
-    throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", assignment, section,
+    throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", io::abridged(assignment), io::abridged(section),
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }
 }

@@ -9,6 +9,7 @@
 #include "common/bus/network.hpp"
 #include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
+#include "common/io/printable.hpp"
 #include "common/msg/plausible.hpp"
 #include "common/msg/status.hpp"
 #include "common/ros2/names.hpp"
@@ -44,7 +45,8 @@ LinkRules::LinkRules(std::string robot, const std::vector<std::string>& rules)
   for (const std::string& rule : rules) {
     const bool in = rule.starts_with(kIn);
     const std::string pattern = in ? rule.substr(kIn.size()) : rule;
-    if (pattern.empty()) throw RuleError("--topics '" + rule + "': name a topic, e.g. /slam/pose or in:/goal");
+    if (pattern.empty())
+      throw RuleError("--topics '" + io::abridged(rule) + "': name a topic, e.g. /slam/pose or in:/goal");
     if (bus::stays_on_host(ros2::dds_topic(pattern)))
       throw RuleError("--topics " + rule + ": raw frames and features never leave their host; images pass as JPEG: " +
                       bus::topics::kColorJpeg.name);

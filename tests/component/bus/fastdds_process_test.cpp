@@ -135,6 +135,15 @@ TEST(FastddsProcesses, messages_in_shared_memory_end_where_they_were_written) {
   EXPECT_EQ(*unreadable, 0);
 }
 
+TEST(FastddsLog, is_text_without_colours) {
+  using eprosima::fastdds::dds::Log;
+  const auto bus = connect_to("fastdds");
+  testing::internal::CaptureStderr();
+  EPROSIMA_LOG_ERROR(TEST, "of a \033[31mpeer");
+  Log::Flush();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "Fast DDS: TEST: of a \\x1b[31mpeer\n");
+}
+
 TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {
   BusOptions options;
   options.vendor = "fastdds";

@@ -47,6 +47,22 @@ TEST(Printable, keeps_line_ends_on_request) {
   EXPECT_EQ(printable("a\n\tb\r", LineEnds::kKeep), "a\n\tb\\x0d");
 }
 
+TEST(Abridged, shows_both_ends_of_a_long_value_and_its_size) {
+  EXPECT_EQ(abridged(std::string(120, 'x')), std::string(120, 'x'));
+  const std::string shown = abridged("begin" + std::string(99'990, ' ') + "end");
+  EXPECT_TRUE(shown.starts_with("begin ") && shown.ends_with(" end")) << shown;
+  EXPECT_NE(shown.find(" [99998 bytes] "), std::string::npos);
+  EXPECT_LE(shown.size(), 120U);
+}
+
+TEST(Abridged, cuts_no_character_in_two) {
+  for (std::size_t before = 0; before < 3; ++before) {
+    std::string text(before, 'x');
+    for (int i = 0; i < 100; ++i) text += "\xe2\x9c\x93";
+    EXPECT_TRUE(is_printable(abridged(text)));
+  }
+}
+
 TEST(PrintableOutput, filters_a_stream_as_long_as_it_lives) {
   std::ostringstream out;
   {
@@ -57,6 +73,17 @@ TEST(PrintableOutput, filters_a_stream_as_long_as_it_lives) {
   EXPECT_EQ(out.str(), "topic \xc3\xbc\\x1b[31m\nrest\\x07");
   out << '\033';
   EXPECT_TRUE(out.str().ends_with('\033'));
+}
+
+TEST(PrintableOutput, lines_may_have_a_longest_size) {
+  std::ostringstream out;
+  {
+    const PrintableOutput filter(out, 100);
+    out << "short\n\n" << std::string(5000, 'x') << "\nlast";
+  }
+  const std::string text = out.str();
+  EXPECT_TRUE(text.starts_with("short\n\nxxx") && text.ends_with("xxx\nlast")) << text;
+  EXPECT_LT(text.size(), 120U);
 }
 
 }  // namespace

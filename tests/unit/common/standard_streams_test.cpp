@@ -21,7 +21,7 @@ TEST(StandardStreams, a_file_never_gets_the_number_of_a_closed_stream) {
   const int status = status_of([] {
     ::close(STDERR_FILENO);
     ::close(STDIN_FILENO);
-    hold_standard_streams();
+    prepare_standard_streams();
     const int file = ::open("/dev/zero", O_RDONLY);
     return file > STDERR_FILENO && ::write(STDERR_FILENO, "x", 1) == 1 ? 0 : 1;
   });

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
@@ -33,7 +34,7 @@ std::size_t indent_of(const std::string& line) {
   const std::string near = service::nearest_name(word, known);
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
-  throw service::ConfigError("unknown " + what + " '" + word + "'" +
+  throw service::ConfigError("unknown " + what + " '" + io::abridged(word) + "'" +
                              (near.empty() ? "; known: " + all : ", did you mean '" + near + "'?"));
 }
 

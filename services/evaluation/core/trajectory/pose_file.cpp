@@ -16,6 +16,7 @@
 
 #include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
+#include "common/io/printable.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"
 #include "common/mcap/recording_file.hpp"
@@ -56,7 +57,7 @@ bool is_ns(const std::string& field) {
 
 double number(const std::string& field) {
   const std::optional<double> value = io::parse_number(field);
-  if (!value) throw std::invalid_argument("'" + field + "' is not a number");
+  if (!value) throw std::invalid_argument("'" + io::abridged(field) + "' is not a number");
   return *value;
 }
 
@@ -124,7 +125,7 @@ std::int64_t stamp_of(const std::string& field) {
   std::int64_t stamp_ns = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), stamp_ns);
   if (error != std::errc() || end != field.data() + field.size() || stamp_ns < 0)
-    throw std::invalid_argument("'" + field + "' is not a stamp in nanoseconds");
+    throw std::invalid_argument("'" + io::abridged(field) + "' is not a stamp in nanoseconds");
   return stamp_ns;
 }
 
