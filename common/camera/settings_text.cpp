@@ -9,10 +9,11 @@
 namespace rtd::camera {
 namespace {
 
-using Entries = std::vector<std::pair<std::string, std::vector<std::string>>>;
+using Entries = std::map<std::string, SettingsText::Entry>;
 
 constexpr std::string_view kBlank = " \t\r\n";
 constexpr std::size_t kMaxDepth = 64;  // of brackets: a file from outside must not exhaust the stack
+constexpr std::size_t kMaxPath = 256;  // longer ones are passed over: all that is below repeats them
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(kBlank);
@@ -56,24 +57,39 @@ std::string_view without_tag(std::string_view text) {
   return end == std::string_view::npos ? std::string_view{} : trimmed(text.substr(end));
 }
 
-int open_brackets(std::string_view text) {
-  int open = 0;
-  outside_quotes(text, [&](std::size_t i) {
-    open += text[i] == '[' || text[i] == '{';
-    open -= text[i] == ']' || text[i] == '}';
-    return false;
-  });
-  return open;
-}
+/// How many brackets are open after parts of a text; a quote may end in a later one.
+class BracketCount {
+ public:
+  int add(std::string_view part) {
+    for (const char letter : part) {
+      if (quote_ != 0) {
+        if (letter == quote_) quote_ = 0;
+      } else {
+        open_ += letter == '[' || letter == '{';
+        open_ -= letter == ']' || letter == '}';
+        if (letter == '"' || letter == '\'') quote_ = letter;
+      }
+    }
+    return open_;
+  }
 
+ private:
+  int open_ = 0;
+  char quote_ = 0;
+};
+
+/// Cut behind kMaxPath: what is longer is not kept.
 std::string joined(const std::string& parent, std::string_view key) {
-  return parent.empty() ? std::string(key) : parent + "." + std::string(key);
+  std::string path = parent.empty() ? std::string() : parent + ".";
+  path.append(key.substr(0, kMaxPath + 1));
+  path.resize(std::min(path.size(), kMaxPath + 1));
+  return path;
 }
 
 void add(Entries& entries, const std::string& path, std::string_view value) {
-  const auto there = std::ranges::find(entries, path, &Entries::value_type::first);
-  Entries::value_type& entry = there == entries.end() ? entries.emplace_back(path, std::vector<std::string>{}) : *there;
-  if (value = unquoted(without_tag(value)); !value.empty()) entry.second.emplace_back(value);
+  if (path.size() > kMaxPath) return;
+  SettingsText::Entry& entry = entries.try_emplace(path, SettingsText::Entry{entries.size(), {}}).first->second;
+  if (value = unquoted(without_tag(value)); !value.empty()) entry.values.emplace_back(value);
 }
 
 /// JSON, and the part of YAML that looks like it.
@@ -192,8 +208,12 @@ class BlockReader {
       return;
     }
     std::string flow(value);
-    for (int open = open_brackets(flow); open > 0 && !rest_.empty(); open = open_brackets(flow))
-      flow.append(" ").append(without_comment(take_line()));
+    BracketCount brackets;
+    for (int open = brackets.add(flow); open > 0 && !rest_.empty();) {
+      const std::string_view line = without_comment(take_line());
+      open = brackets.add(line);
+      flow.append(" ").append(line);
+    }
     FlowReader(flow, entries_).read(path);
   }
 
@@ -205,8 +225,6 @@ class BlockReader {
 }  // namespace
 
 SettingsText::SettingsText(std::string_view text) {
-  constexpr std::size_t kMost = 128U << 10;  // settings are small; looking keys up takes the square of their number
-  text = text.substr(0, kMost);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // byte order mark
   if (trimmed(text).starts_with('{')) {
     FlowReader(text, entries_).read("");
@@ -215,14 +233,9 @@ SettingsText::SettingsText(std::string_view text) {
   }
 }
 
-const SettingsText::Entry* SettingsText::find(const std::string& path) const {
-  const auto found = std::ranges::find(entries_, path, &Entry::first);
-  return found == entries_.end() ? nullptr : &*found;
-}
-
 std::string SettingsText::text(const std::string& path) const {
-  const Entry* const entry = find(path);
-  return entry == nullptr || entry->second.empty() ? std::string() : entry->second.front();
+  const auto entry = entries_.find(path);
+  return entry == entries_.end() || entry->second.values.empty() ? std::string() : entry->second.values.front();
 }
 
 std::optional<double> SettingsText::number(const std::string& path) const {
@@ -230,10 +243,10 @@ std::optional<double> SettingsText::number(const std::string& path) const {
 }
 
 std::vector<double> SettingsText::numbers(const std::string& path) const {
-  const Entry* const entry = find(path);
+  const auto entry = entries_.find(path);
   std::vector<double> values;
-  if (entry == nullptr) return values;
-  for (const std::string& value : entry->second) {
+  if (entry == entries_.end()) return values;
+  for (const std::string& value : entry->second.values) {
     for (const io::TextLine& line : io::split_lines(value, " \t,")) {  // "582.8 0 320" has one key, too
       for (const std::string& field : line.fields) {
         const std::optional<double> number = io::parse_number(field);
@@ -246,9 +259,13 @@ std::vector<double> SettingsText::numbers(const std::string& path) const {
 }
 
 std::string SettingsText::path_of(const std::string& name) const {
-  const auto found = std::ranges::find_if(
-      entries_, [&](const Entry& entry) { return entry.first == name || entry.first.ends_with("." + name); });
-  return found == entries_.end() ? std::string() : found->first;
+  const auto is_named = [&](const Entries::value_type& entry) {
+    return entry.first == name || entry.first.ends_with("." + name);
+  };
+  auto first = entries_.end();
+  for (auto entry = entries_.begin(); entry != entries_.end(); ++entry)
+    if (is_named(*entry) && (first == entries_.end() || entry->second.place < first->second.place)) first = entry;
+  return first == entries_.end() ? std::string() : first->first;
 }
 
 }  // namespace rtd::camera

@@ -112,9 +112,9 @@ cv::Mat pnm_pixels(const std::uint8_t* from, cv::Size size_px, bool color, bool 
 
 }  // namespace
 
-bool is_raster_size(std::int64_t width, std::int64_t height) {
-  constexpr std::int64_t kMost = vision::DecodeRules::kMaxStreamPixels;
-  return width > 0 && height > 0 && width <= kMost && height <= kMost && width * height <= kMost;
+bool is_raster_size(std::int64_t width, std::int64_t height, std::int64_t times) {
+  const std::int64_t most = times * vision::DecodeRules::kMaxStreamPixels;
+  return width > 0 && height > 0 && width <= most && height <= most && width * height <= most;
 }
 
 float half_to_float(std::uint16_t half) {
@@ -126,6 +126,8 @@ float half_to_float(std::uint16_t half) {
 }
 
 std::vector<std::uint8_t> inflate_at_most(Bytes packed, std::size_t size) {
+  constexpr std::size_t kMostPerByte = 1032;  // of deflate: runs of 258 bytes in two bits
+  if (size / kMostPerByte > packed.size()) return {};
   std::vector<std::uint8_t> bytes(size);
   auto length = static_cast<uLongf>(size);
   const int result = uncompress(bytes.data(), &length, packed.data(), static_cast<uLong>(packed.size()));

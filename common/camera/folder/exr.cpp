@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -89,25 +88,29 @@ Block expand_runs(Bytes packed, std::size_t size) {
   return block;
 }
 
-/// Bytes are stored as differences, those at even places first.
-Block undo_differences(Block block) {
-  for (std::size_t i = 1; i < block.size(); ++i) block[i] = static_cast<std::uint8_t>(block[i - 1] + block[i] - 128);
-  Block bytes(block.size());
-  const std::size_t half = (block.size() + 1) / 2;
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = block[i % 2 == 0 ? i / 2 : half + i / 2];
-  return bytes;
-}
+/// The bytes of some lines. Packed ones are in two halves: those at even places first.
+struct Lines {
+  Bytes bytes;
+  bool in_halves;
+
+  void copy(std::size_t from, std::span<std::uint8_t> to) const {
+    const std::size_t half = (bytes.size() + 1) / 2;
+    for (std::size_t i = from; i < from + to.size(); ++i)
+      to[i - from] = bytes[!in_halves ? i : i % 2 == 0 ? i / 2 : half + i / 2];
+  }
+};
 
 class ExrReader {
  public:
-  explicit ExrReader(Bytes bytes) : file_(bytes) {}
+  explicit ExrReader(Bytes bytes) : file_(bytes), unread_(bytes.size()) {}
 
   cv::Mat read() {
     read_header();
     const std::int64_t width = std::int64_t{window_[2]} - window_[0] + 1,
                        height = std::int64_t{window_[3]} - window_[1] + 1;
     if (!is_raster_size(width, height) || channels_.empty()) throw ExrError("has a damaged header or too many pixels");
-    image_.create(static_cast<int>(height), static_cast<int>(width), CV_32FC1);
+    image_ = cv::Mat::zeros(static_cast<int>(height), static_cast<int>(width), CV_32FC1);
+    lay_out_line();
     const int lines = lines_per_block();
     std::vector<std::uint64_t> offsets(static_cast<std::size_t>((image_.rows + lines - 1) / lines));
     for (std::uint64_t& offset : offsets) offset = file_.take<std::uint64_t>();
@@ -137,51 +140,72 @@ class ExrReader {
     throw ExrError("is compressed in a way that is not read (PIZ, PXR24, B44, DWA): save it with ZIP or uncompressed");
   }
 
+  /// A line has the values of one channel behind those of the other.
+  void lay_out_line() {
+    constexpr std::size_t kMostBytes = std::size_t{128} << 20;  // of all channels: to unpack, for one of them
+    const auto depth = depth_channel();
+    const auto columns = static_cast<std::size_t>(image_.cols);
+    type_ = depth->type;
+    value_bytes_ = depth->bytes();
+    for (auto channel = channels_.begin(); channel != channels_.end(); ++channel) {
+      if (channel == depth) depth_at_ = line_bytes_;
+      line_bytes_ += channel->bytes() * columns;
+    }
+    if (line_bytes_ > kMostBytes / static_cast<std::size_t>(image_.rows))
+      throw ExrError("has " + std::to_string(channels_.size()) + " channels, too many for its size: save depth alone");
+  }
+
   /// The one that holds depth.
-  std::size_t depth_channel() const {
+  std::vector<Channel>::const_iterator depth_channel() const {
     for (const char* const name : {"Z", "Y", "R", "V", "depth.Z", "Depth.Z", "Depth.V"}) {
       const auto found = std::ranges::find(channels_, name, &Channel::name);
-      if (found != channels_.end()) return static_cast<std::size_t>(found - channels_.begin());
+      if (found != channels_.end()) return found;
     }
-    return 0;
+    return channels_.begin();
   }
 
   void read_block(std::uint64_t offset, int lines) {
     file_.go_to(offset);
     const std::int64_t first = std::int64_t{file_.take<std::int32_t>()} - window_[1];
     const Bytes packed = file_.take(file_.take<std::uint32_t>());
-    if (first < 0 || first >= image_.rows) throw ExrError("is damaged");
+    if (first < 0 || first >= image_.rows || packed.size() > unread_) throw ExrError("is damaged");
+    unread_ -= packed.size();
     lines = std::min(lines, image_.rows - static_cast<int>(first));
-    std::size_t line_bytes = 0;
-    for (const Channel& channel : channels_) line_bytes += channel.bytes() * static_cast<std::size_t>(image_.cols);
-    const Block block = unpack(packed, line_bytes * static_cast<std::size_t>(lines));
-    if (block.size() < line_bytes * static_cast<std::size_t>(lines)) throw ExrError("is truncated or damaged");
+    const std::size_t size = line_bytes_ * static_cast<std::size_t>(lines);
+    const bool stored = compression_ == 0 || packed.size() >= size;  // it did not get smaller
+    const Block block = stored ? Block() : unpack(packed, size);
+    if ((stored ? packed.size() : block.size()) < size) throw ExrError("is truncated or damaged");
     for (int line = 0; line < lines; ++line)
-      copy_line(block.data() + static_cast<std::size_t>(line) * line_bytes, static_cast<int>(first) + line);
+      copy_line({stored ? packed : block, !stored}, line, static_cast<int>(first) + line);
   }
 
+  /// Bytes are stored as differences.
   Block unpack(Bytes packed, std::size_t size) const {
-    if (compression_ == 0 || packed.size() >= size) return {packed.begin(), packed.end()};  // it did not get smaller
-    return undo_differences(compression_ == 1 ? expand_runs(packed, size) : inflate_at_most(packed, size));
+    Block block = compression_ == 1 ? expand_runs(packed, size) : inflate_at_most(packed, size);
+    for (std::size_t i = 1; i < block.size(); ++i) block[i] = static_cast<std::uint8_t>(block[i - 1] + block[i] - 128);
+    return block;
   }
 
-  void copy_line(const std::uint8_t* from, int row) {
-    const std::size_t wanted = depth_channel();
-    for (std::size_t i = 0; i < wanted; ++i) from += channels_[i].bytes() * static_cast<std::size_t>(image_.cols);
+  void copy_line(const Lines& from, int line, int row) {
+    Block values(value_bytes_ * static_cast<std::size_t>(image_.cols));
+    from.copy(static_cast<std::size_t>(line) * line_bytes_ + depth_at_, values);
     auto* const to = image_.ptr<float>(row);
-    for (int column = 0; column < image_.cols; ++column, from += channels_[wanted].bytes()) {
+    for (int column = 0; column < image_.cols; ++column) {
       std::uint32_t bits = 0;
-      std::memcpy(&bits, from, channels_[wanted].bytes());
-      to[column] = channels_[wanted].type == 1   ? half_to_float(static_cast<std::uint16_t>(bits))
-                   : channels_[wanted].type == 2 ? std::bit_cast<float>(bits)
-                                                 : static_cast<float>(bits);
+      std::memcpy(&bits, values.data() + static_cast<std::size_t>(column) * value_bytes_, value_bytes_);
+      to[column] = type_ == 1   ? half_to_float(static_cast<std::uint16_t>(bits))
+                   : type_ == 2 ? std::bit_cast<float>(bits)
+                                : static_cast<float>(bits);
     }
   }
 
   ExrBytes file_;
+  std::size_t unread_;  ///< bytes that no block has had: blocks do not overlap
   std::uint8_t compression_ = 0;
   std::array<std::int32_t, 4> window_{0, 0, -1, -1};  ///< x and y from, x and y to
   std::vector<Channel> channels_;
+  std::size_t line_bytes_ = 0, depth_at_ = 0, value_bytes_ = 0;  ///< of a line, of depth in it, of one value of it
+  std::uint32_t type_ = 0;
   cv::Mat image_;
 };
 

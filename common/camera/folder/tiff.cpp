@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cstring>
-#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -59,29 +58,24 @@ class TiffBytes {
   bool big_;
 };
 
-using Fields = std::map<Tag, std::vector<std::uint32_t>>;
-
-/// The first directory: fields of type SHORT and LONG.
-Fields read_fields(const TiffBytes& file) {
+/// The values of a field of type SHORT or LONG, in the first directory; none when it has no such field.
+std::vector<std::uint32_t> values_of(const TiffBytes& file, Tag tag) {
   constexpr std::uint32_t kShort = 3, kLong = 4, kMostValues = 1U << 20;
-  Fields fields;
   const std::size_t directory = file.number(4, 4);
   const std::uint32_t entries = file.number(directory, 2);
   for (std::uint32_t i = 0; i < entries; ++i) {
     const std::size_t entry = directory + 2 + std::size_t{i} * 12;
     const std::uint32_t type = file.number(entry + 2, 2), count = file.number(entry + 4, 4);
-    if ((type != kShort && type != kLong) || count > kMostValues) continue;
+    if (file.number(entry, 2) != static_cast<std::uint32_t>(tag)) continue;
+    if ((type != kShort && type != kLong) || count > kMostValues) return {};
     const std::size_t size = type == kShort ? 2 : 4;
-    const std::size_t values = count * size <= 4 ? entry + 8 : file.number(entry + 8, 4);
-    auto& into = fields[static_cast<Tag>(file.number(entry, 2))];
-    for (std::uint32_t k = 0; k < count; ++k) into.push_back(file.number(values + k * size, size));
+    const std::size_t at = count * size <= 4 ? entry + 8 : file.number(entry + 8, 4);
+    file.piece(at, count * size);
+    std::vector<std::uint32_t> values(count);
+    for (std::uint32_t k = 0; k < count; ++k) values[k] = file.number(at + k * size, size);
+    return values;
   }
-  return fields;
-}
-
-std::uint32_t value_of(const Fields& fields, Tag tag, std::uint32_t otherwise) {
-  const auto found = fields.find(tag);
-  return found == fields.end() || found->second.empty() ? otherwise : found->second.front();
+  return {};
 }
 
 Block unpack_bits(Bytes packed, std::size_t size) {
@@ -129,7 +123,7 @@ class LzwReader {
 
   void clear() {
     constexpr std::size_t kFirst = 258;
-    strings_.assign(kFirst, {0, 1});
+    strings_.resize(kFirst, {0, 1});
     bits_ = 9;
   }
 
@@ -216,50 +210,64 @@ void undo_float_differences(Block& block, const Piece& piece) {
 
 class TiffReader {
  public:
-  explicit TiffReader(Bytes bytes) : file_(bytes), fields_(read_fields(file_)) {}
+  explicit TiffReader(Bytes bytes) : file_(bytes), unread_(bytes.size()) {}
 
   cv::Mat read() {
-    const std::uint32_t width = value_of(fields_, Tag::kWidth, 0), height = value_of(fields_, Tag::kHeight, 0);
+    const std::uint32_t width = value_of(Tag::kWidth, 0), height = value_of(Tag::kHeight, 0);
     if (!is_raster_size(width, height)) throw TiffError("has a damaged header or too many pixels");
     image_.create(static_cast<int>(height), static_cast<int>(width), type());
-    const bool tiled = fields_.count(Tag::kTileOffsets) != 0;
-    const std::uint32_t rows = std::min(value_of(fields_, tiled ? Tag::kTileHeight : Tag::kRowsPerStrip, height),
-                                        tiled ? std::uint32_t{1} << 14 : height);
-    const std::uint32_t columns =
-        tiled ? std::min(value_of(fields_, Tag::kTileWidth, 0), std::uint32_t{1} << 14) : width;
-    if (rows == 0 || columns == 0 || !is_raster_size(columns, rows)) throw TiffError("has a damaged header");
-    const auto &offsets = fields_[tiled ? Tag::kTileOffsets : Tag::kStripOffsets],
-               &sizes = fields_[tiled ? Tag::kTileBytes : Tag::kStripBytes];
-    std::size_t index = 0;
-    for (std::uint32_t row = 0; row < height; row += rows) {
-      for (std::uint32_t column = 0; column < width; column += columns, ++index) {
-        if (index >= offsets.size() || index >= sizes.size()) throw TiffError("is truncated");
-        const std::uint32_t in_strip = tiled ? rows : std::min(rows, height - row);
-        paste(file_.piece(offsets[index], sizes[index]), {columns, in_strip, image_.elemSize1()}, row, column);
-      }
-    }
+    compression_ = value_of(Tag::kCompression, 1);
+    predictor_ = value_of(Tag::kPredictor, 1);
+    tiled_ = !values_of(file_, Tag::kTileOffsets).empty();
+    tiled_ ? read_pieces(value_of(Tag::kTileWidth, 0), value_of(Tag::kTileHeight, 0))
+           : read_pieces(width, std::min(value_of(Tag::kRowsPerStrip, height), height));
     return image_;
   }
 
  private:
+  std::uint32_t value_of(Tag tag, std::uint32_t otherwise) const {
+    const std::vector<std::uint32_t> values = values_of(file_, tag);
+    return values.empty() ? otherwise : values.front();
+  }
+
   int type() const {
     constexpr std::uint32_t kFloat = 3;
-    const std::uint32_t bits = value_of(fields_, Tag::kBits, 1), samples = value_of(fields_, Tag::kSamples, 1);
-    const bool floats = value_of(fields_, Tag::kFormat, 1) == kFloat;
+    const std::uint32_t bits = value_of(Tag::kBits, 1), samples = value_of(Tag::kSamples, 1);
+    const bool floats = value_of(Tag::kFormat, 1) == kFloat;
     if (samples == 1 && bits == 16 && !floats) return CV_16UC1;
     if (samples == 1 && bits == 32 && floats) return CV_32FC1;
     throw TiffError("has " + std::to_string(samples) + " values of " + std::to_string(bits) +
                     " bits per pixel; needed is one of 16 bits, or a float of 32");
   }
 
+  /// Row by row. Only the last of a row or a column reaches beyond the image, and not by more than another image.
+  void read_pieces(std::uint32_t columns, std::uint32_t rows) {
+    const std::vector<std::uint32_t> offsets = values_of(file_, tiled_ ? Tag::kTileOffsets : Tag::kStripOffsets),
+                                     sizes = values_of(file_, tiled_ ? Tag::kTileBytes : Tag::kStripBytes);
+    const auto width = static_cast<std::uint32_t>(image_.cols), height = static_cast<std::uint32_t>(image_.rows);
+    if (!is_raster_size(columns, rows)) throw TiffError("has a damaged header");
+    const std::uint64_t across = (width - 1) / columns + 1, down = (height - 1) / rows + 1;
+    if (!is_raster_size(static_cast<std::int64_t>(across * columns), static_cast<std::int64_t>(down * rows), 2))
+      throw TiffError("has tiles that are too large for its size");
+    if (std::min(offsets.size(), sizes.size()) < across * down) throw TiffError("is truncated");
+    std::size_t index = 0;
+    for (std::uint32_t row = 0; row < height; row += rows) {
+      for (std::uint32_t column = 0; column < width; column += columns, ++index) {
+        const std::uint32_t in_piece = tiled_ ? rows : std::min(rows, height - row);
+        paste(file_.piece(offsets[index], sizes[index]), {columns, in_piece, image_.elemSize1()}, row, column);
+      }
+    }
+  }
+
   void paste(Bytes packed, const Piece& piece, std::uint32_t row, std::uint32_t column) {
+    if (packed.size() > unread_) throw TiffError("has strips or tiles that overlap");
+    unread_ -= packed.size();
     const std::size_t row_bytes = piece.width * piece.bytes_per_value;
-    Block block = unpack(packed, value_of(fields_, Tag::kCompression, 1), piece.rows * row_bytes);
+    Block block = unpack(packed, compression_, piece.rows * row_bytes);
     if (block.size() < piece.rows * row_bytes) throw TiffError("is truncated or damaged");
-    const std::uint32_t predictor = value_of(fields_, Tag::kPredictor, 1);
-    if (file_.big_endian() && predictor != 3) swap_values(block, piece.bytes_per_value);
-    if (predictor == 2 && image_.type() == CV_16UC1) undo_differences(block, piece);
-    if (predictor == 3 && image_.type() == CV_32FC1) undo_float_differences(block, piece);
+    if (file_.big_endian() && predictor_ != 3) swap_values(block, piece.bytes_per_value);
+    if (predictor_ == 2 && image_.type() == CV_16UC1) undo_differences(block, piece);
+    if (predictor_ == 3 && image_.type() == CV_32FC1) undo_float_differences(block, piece);
     const std::size_t seen =
         std::min(piece.width, static_cast<std::size_t>(image_.cols) - column) * piece.bytes_per_value;
     for (std::size_t k = 0; k < piece.rows && row + k < static_cast<std::size_t>(image_.rows); ++k)
@@ -268,7 +276,9 @@ class TiffReader {
   }
 
   TiffBytes file_;
-  Fields fields_;
+  std::size_t unread_;  ///< bytes that no piece has had: pieces do not overlap
+  std::uint32_t compression_ = 1, predictor_ = 1;
+  bool tiled_ = false;
   cv::Mat image_;
 };
 

@@ -53,6 +53,22 @@ ORBextractor.nFeatures: 1000
 Viewer.PointSize:2
 )";
 
+TEST(CalibrationForms, keys_that_are_too_long_are_passed_over) {
+  const std::string above = std::string(100'000, 'k') + ":\n";
+  std::string below;
+  for (int i = 0; i < 100'000; ++i) below += " a" + std::to_string(i) + ": 1\n";
+  const Calibration read = parse_calibration(above + below + kOrb2, "input");
+  expect_camera(read, {517.306408, 516.469215, 318.64304, 255.313989}, {640, 480});
+}
+
+TEST(CalibrationForms, a_list_may_be_spread_over_many_lines) {
+  const std::string lines(200'000, '\n');
+  const Calibration read = parse_calibration(
+      "image_width: 640\nimage_height: 480\ncamera_matrix:\n  data: [500, 0, 320," + lines + "0, 510, 240, 0, 0, 1]\n",
+      "input");
+  expect_camera(read, {500, 510, 320, 240}, {640, 480});
+}
+
 TEST(CalibrationForms, reads_settings_of_orb_slam2) {
   const Calibration read = parse_calibration(kOrb2, "TUM1.yaml");
   expect_camera(read, {517.306408, 516.469215, 318.64304, 255.313989}, {640, 480});

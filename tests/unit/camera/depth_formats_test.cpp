@@ -136,6 +136,41 @@ TEST(DepthFormats, read_exr_as_opencv_writes_it) {
   EXPECT_THAT(decode_depth_values(piz).problem, HasSubstr("ZIP"));
 }
 
+TEST(DepthFormats, read_one_of_the_channels_of_exr) {
+  setenv("OPENCV_IO_ENABLE_OPENEXR", "1", 1);
+  std::vector<cv::Mat> channels = {ramp(CV_32FC1), ramp(CV_32FC1), ramp(CV_32FC1)};  // B, G, R
+  cv::Mat color;
+  cv::merge(channels, color);
+  for (const int compression : {cv::IMWRITE_EXR_COMPRESSION_NO, cv::IMWRITE_EXR_COMPRESSION_RLE,
+                                cv::IMWRITE_EXR_COMPRESSION_ZIPS, cv::IMWRITE_EXR_COMPRESSION_ZIP}) {
+    Bytes bytes;
+    try {
+      cv::imencode(".exr", color, bytes, {cv::IMWRITE_EXR_COMPRESSION, compression, cv::IMWRITE_EXR_TYPE, 2});
+    } catch (const cv::Exception&) {
+      GTEST_SKIP() << "this OpenCV writes no EXR";
+    }
+    const auto read = decode_depth_values(bytes);
+    EXPECT_TRUE(same(read.pixels, channels[2])) << compression << read.problem;
+  }
+}
+
+TEST(DepthFormats, exr_whose_channels_are_far_too_many_is_refused) {
+  const Bytes bytes = exr_of(ramp(CV_32FC1, 3840, 2160), "Z");
+  EXPECT_EQ(decode_depth_values(bytes).problem, "");
+  Bytes named_often = bytes;
+  const Bytes channel = {'c', 0, 2, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0};
+  constexpr std::size_t kSizeOfChannels = 8 + 9 + 7;  // behind the magic, "channels" and "chlist"
+  for (int i = 0; i < 4; ++i)
+    named_often.insert(named_often.begin() + kSizeOfChannels + 4, channel.begin(), channel.end());
+  named_often[kSizeOfChannels] = static_cast<std::uint8_t>(named_often[kSizeOfChannels] + 4 * channel.size());
+  EXPECT_THAT(decode_depth_values(named_often).problem, HasSubstr("5 channels"));
+}
+
+TEST(DepthFormats, a_packed_piece_that_is_too_short_takes_no_memory) {
+  const Bytes packed(100);
+  EXPECT_THAT(inflate_at_most(packed, std::size_t{1} << 60), ::testing::IsEmpty());
+}
+
 TEST(DepthFormats, read_the_number_types_of_npy) {
   const std::string header = "{'descr': 'TYPE', 'fortran_order': False, 'shape': (1, 2), }\n";
   const auto npy = [&](const std::string& type, const auto first, const auto second) {
