@@ -169,8 +169,10 @@ std::optional<Eigen::Isometry3d> matrix_pose(const Eigen::Matrix<double, 3, 4>& 
 
 std::string stamp_in_name(const std::string& text) {
   if (io::parse_number(text)) return text;
+  constexpr std::size_t kLongestName = 255;  // of a file
   const std::filesystem::path path(text);
   std::string stem = path.filename().string();
+  if (stem.size() > kLongestName) return text;
   while (!stem.empty() && !io::parse_number(stem)) {
     const std::size_t dot = stem.rfind('.');
     if (dot == std::string::npos) return text;

@@ -8,6 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <functional>
+#include <queue>
 #include <sstream>
 #include <tuple>
 
@@ -69,6 +71,71 @@ std::ifstream open_or_throw(const std::filesystem::path& path) {
   return input;
 }
 
+/// Stamps of both sides in one line by their time. The pair that is closest of all stands side by side in it; when it
+/// has left the line, its neighbours stand side by side.
+class Association {
+ public:
+  Association(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
+              std::int64_t max_difference_ns)
+      : max_difference_ns_(max_difference_ns) {
+    for (std::size_t i = 0; i < first_ns.size(); ++i) line_.push_back({first_ns[i], 0, i});
+    for (std::size_t i = 0; i < second_ns.size(); ++i) line_.push_back({second_ns[i], 1, i});
+    std::ranges::sort(line_, {},
+                      [](const Place& place) { return std::tuple(place.stamp_ns, place.side, place.index); });
+    for (std::size_t i = 0; i < line_.size(); ++i) {
+      line_[i].before = i == 0 ? kNone : i - 1;
+      line_[i].after = i + 1 == line_.size() ? kNone : i + 1;
+      add_candidate(line_[i].before, i);
+    }
+  }
+
+  std::vector<StampPair> run() {
+    std::vector<StampPair> pairs;
+    for (; !candidates_.empty(); candidates_.pop()) {
+      const Candidate next = candidates_.top();
+      if (line_[next.left].paired || line_[next.right].paired) continue;
+      line_[next.left].paired = line_[next.right].paired = true;
+      pairs.push_back({next.first, next.second});
+      const std::size_t before = line_[next.left].before, after = line_[next.right].after;
+      if (before != kNone) line_[before].after = after;
+      if (after != kNone) line_[after].before = before;
+      add_candidate(before, after);
+    }
+    std::ranges::sort(pairs, {}, &StampPair::first);
+    return pairs;
+  }
+
+ private:
+  static constexpr std::size_t kNone = SIZE_MAX;
+  struct Place {
+    std::int64_t stamp_ns;
+    int side;  ///< 0: the first stamps
+    std::size_t index;
+    std::size_t before = kNone, after = kNone;  ///< places in the line
+    bool paired = false;
+  };
+  struct Candidate {
+    std::int64_t difference_ns;
+    std::size_t first, second;  ///< indices of the stamps
+    std::size_t left, right;    ///< places in the line
+    bool operator>(const Candidate& other) const {
+      return std::tie(difference_ns, first, second) > std::tie(other.difference_ns, other.first, other.second);
+    }
+  };
+
+  void add_candidate(std::size_t left, std::size_t right) {
+    if (left == kNone || right == kNone || line_[left].side == line_[right].side) return;
+    const std::int64_t difference_ns = msg::apart_ns(line_[left].stamp_ns, line_[right].stamp_ns);
+    if (difference_ns >= max_difference_ns_) return;
+    const auto& [first, second] = line_[left].side == 0 ? std::pair(left, right) : std::pair(right, left);
+    candidates_.push({difference_ns, line_[first].index, line_[second].index, left, right});
+  }
+
+  const std::int64_t max_difference_ns_;
+  std::vector<Place> line_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates_;
+};
+
 /// Rounded to microseconds. From the integer: a double would lose the last digits of today's stamps.
 std::string rounded_stamp(std::int64_t stamp_ns) {
   const bool negative = stamp_ns <= -500;
@@ -128,23 +195,7 @@ std::optional<Eigen::Isometry3d> pose_at(const Trajectory& trajectory, std::int6
 
 std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, const std::vector<std::int64_t>& second_ns,
                                  std::int64_t max_difference_ns) {
-  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;  // |difference|, first, second
-  for (std::size_t i = 0; i < second_ns.size(); ++i) {
-    auto it = std::ranges::upper_bound(first_ns, msg::minus_ns(second_ns[i], max_difference_ns));
-    for (; it != first_ns.end() && *it < msg::plus_ns(second_ns[i], max_difference_ns); ++it) {
-      candidates.emplace_back(msg::apart_ns(*it, second_ns[i]), static_cast<std::size_t>(it - first_ns.begin()), i);
-    }
-  }
-  std::ranges::sort(candidates);
-  std::vector<bool> first_used(first_ns.size()), second_used(second_ns.size());
-  std::vector<StampPair> pairs;
-  for (const auto& [difference_ns, first, second] : candidates) {
-    if (first_used[first] || second_used[second]) continue;
-    first_used[first] = second_used[second] = true;
-    pairs.push_back({first, second});
-  }
-  std::ranges::sort(pairs, {}, &StampPair::first);
-  return pairs;
+  return Association(first_ns, second_ns, max_difference_ns).run();
 }
 
 Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {

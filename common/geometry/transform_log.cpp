@@ -12,6 +12,7 @@ namespace rtd::geometry {
 namespace {
 
 constexpr const char* kWorld = "world";
+constexpr std::size_t kMostLinks = 100;  // from one frame to another; a ring has no end
 
 }  // namespace
 
@@ -55,7 +56,7 @@ std::vector<const TransformLog::Link*> TransformLog::chain_to_world(const std::s
   for (auto link = links_.find(bare_frame(camera_frame)); link != links_.end();
        link = links_.find(link->second.parent)) {
     chain.push_back(&link->second);
-    if (link->second.parent == kWorld || chain.size() > links_.size()) break;  // a ring has no end
+    if (link->second.parent == kWorld || chain.size() == kMostLinks) break;
   }
   if (chain.empty() || chain.back()->parent != kWorld) return {};
   return chain;
@@ -93,7 +94,7 @@ std::optional<Eigen::Isometry3d> TransformLog::world_pose(const std::string& cam
 
 std::vector<TransformLog::Above> TransformLog::chain_from(const std::string& frame) const {
   std::vector<Above> chain{{bare_frame(frame), Eigen::Isometry3d::Identity()}};
-  while (chain.size() <= links_.size()) {  // a ring has no end
+  while (chain.size() <= kMostLinks) {
     const auto link = links_.find(chain.back().frame);
     if (link == links_.end()) break;
     const Eigen::Isometry3d& T_parent_child = link->second.T_parent_child.rbegin()->second;

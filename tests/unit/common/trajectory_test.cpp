@@ -4,10 +4,15 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
+#include <set>
 #include <sstream>
+#include <tuple>
 
 namespace rtd::geometry {
 namespace {
@@ -24,6 +29,44 @@ std::string error_of(const std::string& text) {
     return error.what();
   }
   return "no error";
+}
+
+using Stamps = std::vector<std::int64_t>;
+
+/// Every pair that is close enough, the closest first: what associate() gives, by its definition.
+std::vector<std::pair<std::size_t, std::size_t>> associate_all(const Stamps& first, const Stamps& second,
+                                                               std::int64_t most) {
+  std::vector<std::tuple<std::int64_t, std::size_t, std::size_t>> candidates;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t k = 0; k < second.size(); ++k)
+      if (const std::int64_t apart = std::abs(first[i] - second[k]); apart < most) candidates.emplace_back(apart, i, k);
+  std::ranges::sort(candidates);
+  std::set<std::pair<std::size_t, std::size_t>> pairs;
+  std::set<std::size_t> first_used, second_used;
+  for (const auto& [apart, i, k] : candidates) {
+    if (first_used.contains(i) || second_used.contains(k)) continue;
+    first_used.insert(i);
+    second_used.insert(k);
+    pairs.emplace(i, k);
+  }
+  return {pairs.begin(), pairs.end()};
+}
+
+TEST(Associate, takes_the_closest_of_all_pairs_first) {
+  std::mt19937_64 random(1);
+  const auto stamps = [&] {
+    std::set<std::int64_t> chosen;
+    for (std::uint64_t count = random() % 30; count > 0; --count)
+      chosen.insert(static_cast<std::int64_t>(random() % 60));
+    return Stamps(chosen.begin(), chosen.end());
+  };
+  for (int i = 0; i < 2000; ++i) {
+    const Stamps first = stamps(), second = stamps();
+    const auto most = static_cast<std::int64_t>(random() % 40);
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    for (const StampPair& pair : associate(first, second, most)) pairs.emplace_back(pair.first, pair.second);
+    EXPECT_EQ(pairs, associate_all(first, second, most)) << i;
+  }
 }
 
 TEST(TumTrajectory, reads_blank_and_comma_separated_rows_and_skips_comments) {
