@@ -24,7 +24,19 @@ bool Definitions::accept(const Schema& schema, std::uint64_t offset) {
 }
 
 bool Definitions::accept(const Channel& channel, std::uint64_t offset) {
-  if (channel.schema_id != 0 && !schemas_.contains(channel.schema_id))
+  constexpr std::uint64_t kMostDescribed = 16 << 20;  // who reads a type reads its text for each channel
+  const auto schema = schemas_.find(channel.schema_id);
+  if (schema != schemas_.end() && !channels_.contains(channel.id)) {
+    const std::uint64_t bytes = schema->second.data.size();
+    if (bytes > kMostDescribed - described_bytes_) {
+      problems_.add_repeated({ProblemKind::kTooLarge, offset,
+                              "Channel: the texts of the types of all channels are above 16 MiB",
+                              "it is left out, with its messages", true});
+      return false;
+    }
+    described_bytes_ += bytes;
+  }
+  if (channel.schema_id != 0 && schema == schemas_.end())
     problems_.add_repeated({ProblemKind::kMissingSchema, offset,
                             "Channel \"" + channel.topic + "\": its schema " + std::to_string(channel.schema_id) +
                                 " is not in the file before it",

@@ -31,6 +31,7 @@ class Definitions {
   Problems& problems_;
   std::map<SchemaId, Schema> schemas_;
   std::map<ChannelId, Channel> channels_;
+  std::uint64_t described_bytes_ = 0;  ///< texts of the types of all channels
 };
 
 /// Compares the indexes and statistics of a file with the records that were seen. Each check_... returns what differs.

@@ -3,7 +3,6 @@
 #include "common/mcap/chunk_content.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "common/io/bytes.hpp"
 #include "common/mcap/codec.hpp"
@@ -58,15 +57,19 @@ std::optional<InnerRecord> RecordCursor::next() {
 }
 
 ChunkContent ChunkCache::get(const ChunkIndex& index) {
-  const auto known = std::ranges::find(entries_, index.chunk_start_offset, &Entry::offset);
-  if (known != entries_.end()) {
-    entries_.splice(entries_.begin(), entries_, known);
+  if (const auto known = by_offset_.find(index.chunk_start_offset); known != by_offset_.end()) {
+    entries_.splice(entries_.begin(), entries_, known->second);
     return {entries_.front().records, {}, {}};
   }
   make_room(index.uncompressed_size);
   entries_.emplace_front().offset = index.chunk_start_offset;
   ChunkContent content = load(index, entries_.front());
-  if (!content.records) entries_.pop_front();
+  if (content.records) {
+    by_offset_[index.chunk_start_offset] = entries_.begin();
+    held_bytes_ += content.records->size();
+  } else {
+    entries_.pop_front();
+  }
   return content;
 }
 
@@ -90,11 +93,11 @@ ChunkContent ChunkCache::load(const ChunkIndex& index, Entry& entry) {
 }
 
 void ChunkCache::make_room(std::uint64_t bytes) {
-  const auto held = [&] {
-    return std::accumulate(entries_.begin(), entries_.end(), bytes,
-                           [](std::uint64_t sum, const Entry& entry) { return sum + entry.records.size(); });
-  };
-  while (!entries_.empty() && held() > options_.cache_bytes) entries_.pop_back();
+  while (!entries_.empty() && held_bytes_ + bytes > options_.cache_bytes) {
+    held_bytes_ -= entries_.back().records.size();
+    by_offset_.erase(entries_.back().offset);
+    entries_.pop_back();
+  }
 }
 
 }  // namespace rtd::mcap

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <list>
+#include <map>
 #include <optional>
 
 #include "common/mcap/compression.hpp"
@@ -14,7 +15,7 @@ namespace rtd::mcap {
 /// What bounds a reader, whatever a file claims.
 struct ReaderOptions {
   std::uint64_t max_record_bytes = 1 << 29;  ///< of a record, and of a chunk when uncompressed
-  std::uint64_t cache_bytes = 1 << 26;       ///< of uncompressed chunks that an IndexedReader keeps
+  std::uint64_t cache_bytes = 1 << 27;       ///< of uncompressed chunks that an IndexedReader keeps
   std::size_t max_problems = 1000;           ///< listed; more are counted
   bool check_crcs = true;
   /// Delivers the whole records of an uncompressed chunk that the end of the file cuts. No CRC covers them.
@@ -78,6 +79,8 @@ class ChunkCache {
   const ReaderOptions& options_;
   Decompressor decompress_;
   std::list<Entry> entries_;  ///< last used first
+  std::map<std::uint64_t, std::list<Entry>::iterator> by_offset_;
+  std::uint64_t held_bytes_ = 0;
 };
 
 }  // namespace rtd::mcap

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mcap/copy.hpp"
 
+#include <map>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "common/mcap/stream_reader.hpp"
@@ -95,23 +97,24 @@ class Joint : public NewFile {
     Channel channel = part.channels().at(id);
     const auto schema = part.schemas().find(channel.schema_id);
     // A file must not name a schema that it does not have.
-    channel.schema_id = schema == part.schemas().end() ? SchemaId{0} : same_or_new(schemas_, schema->second);
-    return channel_of_[id] = same_or_new(channels_, channel);
+    channel.schema_id = schema == part.schemas().end() ? SchemaId{0} : id_of(schema->second);
+    return channel_of_[id] = id_of(channel);
   }
   /// The id in the new file of a record that is equal but for its id; written if it is new.
-  template <class R>
-  decltype(R::id) same_or_new(std::vector<R>& written, R record) {
-    for (const R& other : written) {
-      record.id = other.id;
-      if (record == other) return other.id;
-    }
-    record.id = writer().add(record);
-    written.push_back(record);
-    return record.id;
+  SchemaId id_of(const Schema& schema) {
+    const auto [known, first] = schemas_.try_emplace({schema.name, schema.encoding, schema.data}, SchemaId{0});
+    if (first) known->second = writer().add(schema);
+    return known->second;
+  }
+  ChannelId id_of(const Channel& channel) {
+    const auto [known, first] = channels_.try_emplace(
+        {channel.topic, channel.schema_id, channel.message_encoding, channel.metadata}, ChannelId{0});
+    if (first) known->second = writer().add(channel);
+    return known->second;
   }
 
-  std::vector<Schema> schemas_;
-  std::vector<Channel> channels_;
+  std::map<std::tuple<std::string, std::string, std::string>, SchemaId> schemas_;
+  std::map<std::tuple<std::string, SchemaId, std::string, std::map<std::string, std::string>>, ChannelId> channels_;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;  ///< name and content
   std::map<ChannelId, ChannelId> channel_of_;                                      ///< of the part in work
 };

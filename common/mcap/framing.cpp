@@ -16,7 +16,7 @@ std::optional<ByteView> SourceWindow::view(std::uint64_t offset, std::uint64_t l
       offset >= start_ && offset - start_ <= bytes_.size() && length <= bytes_.size() - (offset - start_);
   if (!inside) {
     constexpr std::uint64_t kReadAhead = 1 << 16;
-    const std::span<std::byte> into = buffer_.reset(std::min(std::max(length, kReadAhead), size() - offset));
+    const std::span<std::byte> into = buffer_.reset(std::min(length + kReadAhead, size() - offset));
     bytes_ = into.first(source_.read(offset, into));
     start_ = offset;
     if (bytes_.size() < length) return std::nullopt;

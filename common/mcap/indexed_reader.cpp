@@ -29,7 +29,7 @@ IndexedReader::IndexedReader(const io::ByteSource& source, ReaderOptions options
   std::optional<Summary> summary = read_summary(source, options_, problems_);
   summary_ = summary ? std::move(*summary) : scan(source, options_, problems_);
   for (const auto& [id, schema] : summary_.schemas) definitions_.accept(schema, 0);
-  for (const auto& [id, channel] : summary_.channels) definitions_.accept(channel, 0);
+  std::erase_if(summary_.channels, [&](const auto& channel) { return !definitions_.accept(channel.second, 0); });
 }
 
 MessageCursor IndexedReader::messages(MessageQuery query) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mcap/problem.hpp"
 
-#include <algorithm>
 #include <iterator>
 
 namespace rtd::mcap {
@@ -32,17 +31,17 @@ std::string to_string(const Problem& problem) {
 void Problems::add(Problem problem) {
   ++total_;
   data_lost_ = data_lost_ || problem.data_lost;
-  if (listed_.size() < max_listed_) listed_.push_back(std::move(problem));
+  if (listed_.size() >= max_listed_) return;
+  place_of_.try_emplace({problem.kind, problem.what}, listed_.size());
+  listed_.push_back(std::move(problem));
 }
 
 void Problems::add_repeated(Problem problem) {
-  const auto known = std::find_if(listed_.begin(), listed_.end(), [&](const Problem& listed) {
-    return listed.kind == problem.kind && listed.what == problem.what;
-  });
-  if (known == listed_.end()) {
+  const auto known = place_of_.find({problem.kind, problem.what});
+  if (known == place_of_.end()) {
     add(std::move(problem));
   } else {
-    ++known->count;
+    ++listed_[known->second].count;
     ++total_;
   }
 }

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rtd::mcap {
@@ -60,6 +62,7 @@ class Problems {
  private:
   std::size_t max_listed_;
   std::vector<Problem> listed_;
+  std::map<std::pair<ProblemKind, std::string>, std::size_t> place_of_;  ///< in listed_
   std::uint64_t total_ = 0;
   bool data_lost_ = false;
 };

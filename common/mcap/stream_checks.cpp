@@ -14,7 +14,10 @@ bool StreamReader::check_chunk(const Frame& frame, const Chunk& chunk) {
   // Behind times, size, CRC, compression and the length of the records: 40 bytes and the name of the compression.
   const std::uint64_t records_offset = frame.content() + 40 + chunk.compression.size();
   audit_.begin_chunk(frame.offset, frame.end() - frame.offset, chunk);
-  const ChunkContent content = open_chunk(chunk, options_, decompress_, uncompressed_);
+  const ChunkContent content =
+      unpack_limit_.take(chunk.uncompressed_size)
+          ? open_chunk(chunk, options_, decompress_, uncompressed_)
+          : ChunkContent{{}, ProblemKind::kTooLarge, "what the file unpacks to is too much for its size"};
   if (!content.records) {
     audit_.lose_content();
     report(content.fault, frame.offset, "Chunk: " + content.what, "its messages are left out", true);

@@ -17,7 +17,11 @@ std::string bytes_text(std::uint64_t count) {
 }  // namespace
 
 StreamReader::StreamReader(const io::ByteSource& source, ReaderOptions options)
-    : options_(options), problems_(options.max_problems), file_(source), definitions_(problems_) {}
+    : options_(options),
+      problems_(options.max_problems),
+      file_(source),
+      definitions_(problems_),
+      unpack_limit_(source.size()) {}
 
 void StreamReader::assume(const std::map<SchemaId, Schema>& schemas, const std::map<ChannelId, Channel>& channels) {
   for (const auto& [id, schema] : schemas) definitions_.accept(schema, 0);
@@ -223,17 +227,15 @@ const Record* StreamReader::next_in_chunk() {
 template <class R>
 bool StreamReader::take_inner(const InnerRecord& inner) {
   const std::uint64_t chunk = location_.record.offset;
-  const std::string where = " at " + std::to_string(inner.offset) + " in a chunk";
+  const auto named = [&] { return name_of(inner.opcode) + " at " + std::to_string(inner.offset) + " in a chunk"; };
   if constexpr (std::is_same_v<R, Record>) {
     const bool known = is_known(inner.opcode);
-    report(known ? ProblemKind::kMisplacedRecord : ProblemKind::kUnknownRecord, chunk, name_of(inner.opcode) + where,
-           "it is skipped", known);
+    report(known ? ProblemKind::kMisplacedRecord : ProblemKind::kUnknownRecord, chunk, named(), "it is skipped", known);
     return false;
   } else {
     std::optional<R> record = decode<R>(inner.content);
     if (!record) {
-      report(ProblemKind::kDamagedRecord, chunk, name_of(inner.opcode) + where + ": its fields do not fit",
-             "it is skipped", true);
+      report(ProblemKind::kDamagedRecord, chunk, named() + ": its fields do not fit", "it is skipped", true);
       return false;
     }
     if (!definitions_.accept(*record, chunk)) return false;

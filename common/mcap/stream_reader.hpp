@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/io/unpacked.hpp"
 #include "common/mcap/audit.hpp"
 #include "common/mcap/chunk_content.hpp"
 #include "common/mcap/framing.hpp"
@@ -87,6 +88,7 @@ class StreamReader {
   std::uint64_t position_ = 0;
   std::optional<RecordCursor> chunk_;
   bool salvaging_ = false;  ///< chunk_ is what is left of a cut one
+  io::UnpackLimit unpack_limit_;
   Decompressor decompress_;
   Buffer uncompressed_;
   std::uint32_t crc_ = 0;  ///< of [0, crc_end_)

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "common/io/bytes.hpp"
+#include "common/io/unpacked.hpp"
 #include "common/mcap/codec.hpp"
 #include "common/mcap/framing.hpp"
 #include "common/mcap/stream_reader.hpp"
@@ -104,7 +105,10 @@ Check check_chunk(const SourceWindow& file, const ChunkIndex& index, std::uint64
 Check check_chunks(const SourceWindow& file, Summary& summary, std::uint64_t data_end) {
   std::ranges::sort(summary.chunk_indexes, {}, &ChunkIndex::chunk_start_offset);
   std::uint64_t from = kMagic.size();
+  io::UnpackLimit unpack_limit(file.size());
   for (const ChunkIndex& index : summary.chunk_indexes) {
+    if (!unpack_limit.take(index.uncompressed_size))
+      return mismatch(index, "the chunks unpack to too much for the file");
     if (Check check = check_chunk(file, index, from, data_end)) return check;
     from = index.chunk_start_offset + index.chunk_length;
     for (const auto& [channel, offset] : index.message_index_offsets)

@@ -41,6 +41,7 @@ Import::Import(io::ByteSink& sink, bool packed_messages)
     : writer_(sink, {.profile = "ros2"}), packed_messages_(packed_messages) {}
 
 void Import::add(const fs::path& file, Form form, const std::string& name, const Share& progress) {
+  unpack_limit_ = io::UnpackLimit(fs::file_size(file));
   if (form == Form::kBag || form == Form::kDb3) return add_indexed(file, form, name, progress);
   mcap::require_recording(io::FileSource(file), name);
   add_mcap(file, name, progress);
@@ -63,8 +64,8 @@ mcap::ChannelId Import::channel(const mcap::Schema& schema, mcap::Channel channe
 void Import::write(mcap::Message message, const std::string& topic) {
   if (packed_messages_) {
     const unsigned long long size = ZSTD_getFrameContentSize(message.data.data(), message.data.size());
-    const bool sensible =
-        size != ZSTD_CONTENTSIZE_UNKNOWN && size != ZSTD_CONTENTSIZE_ERROR && size <= kMaxMessageBytes;
+    const bool sensible = size != ZSTD_CONTENTSIZE_UNKNOWN && size != ZSTD_CONTENTSIZE_ERROR &&
+                          size <= kMaxMessageBytes && unpack_limit_.take(size);
     unpacked_.resize(sensible ? size : 0);
     const std::size_t result =
         ZSTD_decompress(unpacked_.data(), unpacked_.size(), message.data.data(), message.data.size());

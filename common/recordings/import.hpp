@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "common/io/unpacked.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/recordings/form.hpp"
 
@@ -47,6 +48,7 @@ class Import {
   std::map<std::tuple<std::string, mcap::SchemaId, std::string, std::map<std::string, std::string>>, mcap::ChannelId>
       channels_;
   mcap::Bytes unpacked_;
+  io::UnpackLimit unpack_limit_{0};  ///< of the messages of one file
   std::vector<std::string> damages_;
 };
 

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "common/io/byte_sink.hpp"
+#include "common/io/unpacked.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/form.hpp"
@@ -58,12 +59,14 @@ std::uint64_t room_at(const fs::path& file) {
   return none ? UINT64_MAX : space.available / 10 * 9;
 }
 
-/// Appends what the zstd frames in `source` hold. At most nine tenths of the space that is free where `sink` is are
-/// filled. Throws io::IoError (disk, no room). Returns what is damaged; empty for a whole file.
+/// Appends what the zstd frames in `source` hold, up to what its size allows. At most nine tenths of the space that is
+/// free where `sink` is are filled. Throws io::IoError (disk, no room). Returns what is damaged; empty for a whole
+/// file.
 std::string unpack(const io::ByteSource& source, io::FileSink& sink, const Progress& progress) {
   const std::unique_ptr<ZSTD_DStream, FreeStream> stream(ZSTD_createDStream());
   std::vector<std::byte> in(ZSTD_DStreamInSize()), out(ZSTD_DStreamOutSize());
   const std::uint64_t room = room_at(sink.path());
+  io::UnpackLimit limit(source.size());
   std::size_t unfinished = 1;  // zstd's hint: 0 at the end of a frame
   std::uint64_t offset = 0;
   while (const std::size_t count = source.read(offset, in)) {
@@ -75,6 +78,7 @@ std::string unpack(const io::ByteSource& source, io::FileSink& sink, const Progr
         return std::string("damaged near byte ") + std::to_string(offset + input.pos) + ": " +
                ZSTD_getErrorName(unfinished) + "; what follows is lost";
       }
+      if (!limit.take(output.pos)) return "it unpacks to too much for its size; what follows is lost";
       if (sink.position() + output.pos > room) throw io::IoError(ENOSPC, "unpacked it takes more room than is free");
       sink.append({io::ByteView(out).first(output.pos)});
     }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 #include <string_view>
 
 #include "common/io/recording_forms.hpp"
@@ -19,6 +20,7 @@ namespace {
 using mcap::RecordingFileError;
 
 constexpr const char* kMetadata = "metadata.yaml";
+constexpr std::size_t kMostParts = 10'000;
 
 /// Of rosbag2: a folder of ROS 1 bags is not one recording.
 bool has_recording_name(const fs::path& file) {
@@ -77,8 +79,13 @@ Parts parts_by_metadata(const fs::path& folder) {
       throw RecordingFileError(folder.string() + ": its files are compressed with '" + format +
                                "': only zstd is known");
     }
-    for (const YAML::Node& name : bag["relative_file_paths"]) {
+    const YAML::Node names = bag["relative_file_paths"];
+    if (names.size() > kMostParts)
+      throw RecordingFileError((folder / kMetadata).string() + " names more than 10000 files");
+    std::set<fs::path> taken;
+    for (const YAML::Node& name : names) {
       const fs::path file = place_of(folder, name.as<std::string>());
+      if (!taken.insert(fs::weakly_canonical(file)).second) continue;
       fs::exists(file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
     }
     if (parts.files.empty()) {

@@ -3,6 +3,7 @@
 #include "common/recordings/reader.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "common/mcap/indexed_reader.hpp"
@@ -13,7 +14,9 @@
 namespace rtd::recordings {
 namespace {
 
+/// Empty for a channel that is not read.
 std::optional<ros::Wire> wire_of(const mcap::Channel& channel) {
+  if (!is_name(channel.topic)) return std::nullopt;
   if (channel.message_encoding == "cdr") return ros::Wire::kCdr;
   if (channel.message_encoding == "ros1") return ros::Wire::kRos1;
   return std::nullopt;
@@ -28,7 +31,7 @@ class McapReader final : public Reader {
     const auto counts = message_counts();
     for (const auto& [id, channel] : summary.channels) {
       const auto schema = summary.schemas.find(channel.schema_id);
-      if (!wire_of(channel) || schema == summary.schemas.end()) continue;
+      if (!wire_of(channel) || schema == summary.schemas.end() || !is_name(schema->second.name)) continue;
       add_topic({channel.topic, plain_type(schema->second.name), counts.count(id) != 0 ? counts.at(id) : 0,
                  channel.metadata, schema->second.encoding, schema->second.data});
     }
@@ -54,7 +57,8 @@ class McapReader final : public Reader {
     RecordedMessage recorded{channel.topic, static_cast<std::int64_t>(message->log_time), *wire_of(channel), {}};
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(message->data.data());
     recorded.bytes.assign(bytes, bytes + message->data.size());
-    if (const RecordedTopic* topic = topic_named(*this, recorded.topic)) recorded.type = topic->type;
+    const auto place = place_of_topic_.find(recorded.topic);
+    if (place != place_of_topic_.end()) recorded.type = topics_[place->second].type;
     return recorded;
   }
 
@@ -71,8 +75,8 @@ class McapReader final : public Reader {
  private:
   mcap::MessageCursor messages(const std::vector<std::string>& topics) {
     mcap::MessageQuery query;
-    query.wanted = [topics](const mcap::Channel& channel) {
-      return wire_of(channel) && std::ranges::find(topics, channel.topic) != topics.end();
+    query.wanted = [wanted = std::set(topics.begin(), topics.end())](const mcap::Channel& channel) {
+      return wire_of(channel) && wanted.contains(channel.topic);
     };
     return reader_.messages(std::move(query));
   }
@@ -86,12 +90,11 @@ class McapReader final : public Reader {
   }
 
   void add_topic(RecordedTopic topic) {
-    const auto same =
-        std::ranges::find_if(topics_, [&](const RecordedTopic& other) { return other.name == topic.name; });
-    if (same == topics_.end()) {
+    const auto [same, first] = place_of_topic_.try_emplace(topic.name, topics_.size());
+    if (first) {
       topics_.push_back(std::move(topic));
     } else {
-      same->messages += topic.messages;  // several publishers
+      topics_[same->second].messages += topic.messages;  // several publishers
     }
   }
 
@@ -102,6 +105,7 @@ class McapReader final : public Reader {
 
   Opened opened_;
   mcap::IndexedReader reader_;
+  std::map<std::string, std::size_t> place_of_topic_;  ///< in topics_
   std::optional<mcap::MessageCursor> playing_;
   std::size_t reported_ = 0;
 };
@@ -125,6 +129,11 @@ std::unique_ptr<Reader> open_reader(const std::filesystem::path& path) {
 std::optional<RecordedMessage> Reader::first(const std::string& topic) {
   play({topic});
   return next();
+}
+
+bool is_name(const std::string& text) {
+  constexpr std::size_t kLongest = 255;  // of a topic in ROS 2
+  return text.size() <= kLongest;
 }
 
 std::string plain_type(std::string type) {

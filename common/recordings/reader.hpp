@@ -17,6 +17,9 @@
 namespace rtd::recordings {
 
 /// A topic of a recording.
+/// Not longer than names of topics and types are in ROS 2. Others are not read: each message would repeat them.
+bool is_name(const std::string& text);
+
 struct RecordedTopic {
   std::string name, type;  ///< plain_type()
   std::uint64_t messages = 0;

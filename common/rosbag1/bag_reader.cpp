@@ -8,7 +8,9 @@
 namespace rtd::rosbag1 {
 namespace {
 
-constexpr std::size_t kLoadedChunks = 3;  // neighbours overlap in time
+constexpr std::uint64_t kLoadedBytes = 128 << 20;  // of chunks: neighbours overlap in time
+constexpr std::size_t kLongestName = 255;          // each message would repeat it
+constexpr std::uint64_t kMostDescribed = 16 << 20;
 constexpr std::size_t kMaxDamages = 100;
 
 /// A record inside a chunk.
@@ -27,7 +29,7 @@ InnerRecord next_record(ros::ByteCursor& cursor) {
 
 }  // namespace
 
-BagReader::BagReader(const std::filesystem::path& path) : file_(path) {
+BagReader::BagReader(const std::filesystem::path& path) : file_(path), unpack_limit_(file_.size()) {
   walk();
   search_unindexed();
   const auto older = [](const MessagePlace& a, const MessagePlace& b) { return a.time_ns < b.time_ns; };
@@ -77,6 +79,9 @@ void BagReader::take(const RecordPlace& place) {
   if (op == Op::kChunk) {
     chunks_.push_back(
         {place.data_begin, place.data_bytes, header.number<std::uint32_t>("size"), header.text("compression")});
+    unpacked_bytes_ += chunks_.back().size;
+    if (!unpack_limit_.take(chunks_.back().size))
+      throw BagError(file_.path().string() + ": its chunks unpack to too much for its size");
   }
   if (op != Op::kIndex && op != Op::kConnection) return;
   const std::vector<std::uint8_t> data = file_.read(place.data_begin, place.data_bytes);
@@ -117,9 +122,12 @@ void BagReader::distrust_index() {
 void BagReader::take_connection(const RecordHeader& header, Bytes data) {
   const RecordHeader fields(data);
   const std::string mapped = header.text("topic");
-  connections_[header.number<std::uint32_t>("conn")] = {mapped.empty() ? fields.text("topic") : mapped,
-                                                        fields.text("type"), fields.text("md5sum"),
-                                                        fields.text("message_definition")};
+  Connection connection{mapped.empty() ? fields.text("topic") : mapped, fields.text("type"), fields.text("md5sum"),
+                        fields.text("message_definition")};
+  if (std::max(connection.topic.size(), connection.type.size()) > kLongestName)
+    throw ros::WireError("a topic or its type has a name of more than 255 bytes");
+  if ((described_bytes_ += connection.definition.size()) > kMostDescribed) connection.definition.clear();
+  connections_[header.number<std::uint32_t>("conn")] = std::move(connection);
 }
 
 /// Chunks without index for their messages; and, when the end of the file is missing, those that hold the description
@@ -156,23 +164,24 @@ void BagReader::search(std::uint32_t chunk, bool messages) {
 }
 
 std::vector<Topic> BagReader::topics() const {
+  std::map<std::uint32_t, std::uint64_t> messages;
+  for (const MessagePlace& message : messages_) ++messages[message.connection];
   std::map<std::string, Topic> topics;
   for (const auto& [id, connection] : connections_) {
-    topics.try_emplace(connection.topic, Topic{connection.topic, connection.type, 0});
-  }
-  for (const MessagePlace& message : messages_) {
-    const auto connection = connections_.find(message.connection);
-    if (connection != connections_.end()) ++topics[connection->second.topic].messages;
+    const auto topic = topics.try_emplace(connection.topic, Topic{connection.topic, connection.type, 0}).first;
+    topic->second.messages += messages[id];
   }
   std::vector<Topic> sorted;
   for (const auto& [name, topic] : topics) sorted.push_back(topic);
   return sorted;
 }
 
-std::vector<MessagePlace> BagReader::messages(const std::vector<std::string>& topics) const {
+std::vector<MessagePlace> BagReader::messages(const std::vector<std::string>& topics) {
+  unread_bytes_ = unpacked_bytes_;
+  const std::set<std::string> names(topics.begin(), topics.end());
   std::set<std::uint32_t> wanted;
   for (const auto& [id, connection] : connections_) {
-    if (std::find(topics.begin(), topics.end(), connection.topic) != topics.end()) wanted.insert(id);
+    if (names.contains(connection.topic)) wanted.insert(id);
   }
   std::vector<MessagePlace> chosen;
   std::copy_if(messages_.begin(), messages_.end(), std::back_inserter(chosen),
@@ -188,28 +197,39 @@ Bytes BagReader::read(const MessagePlace& message) {
   try {
     ros::ByteCursor cursor(load(message.chunk));
     cursor.take(message.offset);
+    take_unread(ros::ByteCursor(cursor).read<std::uint32_t>());
     const InnerRecord record = next_record(cursor);
     if (record.header.op() != Op::kMessage || record.header.number<std::uint32_t>("conn") != message.connection) {
       throw ros::WireError("the index is wrong, there is another record");
     }
+    take_unread(record.data.size());
     return record.data;
   } catch (const ros::WireError& error) {
     throw fail(error.what());
   }
 }
 
+void BagReader::take_unread(std::uint64_t bytes) {
+  if (bytes > unread_bytes_) throw ros::WireError("the index is wrong, its messages overlap");
+  unread_bytes_ -= bytes;
+}
+
 const std::vector<std::uint8_t>& BagReader::load(std::uint32_t chunk) {
-  for (const LoadedChunk& loaded : loaded_) {
-    if (loaded.index == chunk) return loaded.content;
-  }
+  if (const auto loaded = loaded_.find(chunk); loaded != loaded_.end()) return loaded->second;
   const Chunk& wanted = chunks_.at(chunk);
   if (wanted.size > kMaxChunkBytes) {
     throw ros::WireError("a chunk claims " + std::to_string(wanted.size) + " bytes, at most " +
                          std::to_string(kMaxChunkBytes) + " are read");
   }
-  LoadedChunk loaded{chunk, decompress(wanted.compression, file_.read(wanted.begin, wanted.bytes), wanted.size)};
-  if (loaded_.size() == kLoadedChunks) loaded_.pop_front();
-  return loaded_.emplace_back(std::move(loaded)).content;
+  std::vector<std::uint8_t> content =
+      decompress(wanted.compression, file_.read(wanted.begin, wanted.bytes), wanted.size);
+  for (loaded_bytes_ += content.size(); loaded_bytes_ > kLoadedBytes && !loaded_.empty(); loading_order_.pop_front()) {
+    const auto oldest = loaded_.find(loading_order_.front());
+    loaded_bytes_ -= oldest->second.size();
+    loaded_.erase(oldest);
+  }
+  loading_order_.push_back(chunk);
+  return loaded_[chunk] = std::move(content);
 }
 
 void BagReader::note(const std::string& damage) {

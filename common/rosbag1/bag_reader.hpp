@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/unpacked.hpp"
 #include "common/rosbag1/bag_file.hpp"
 
 namespace rtd::rosbag1 {
@@ -40,9 +41,9 @@ class BagReader {
   std::vector<Topic> topics() const;
   const std::map<std::uint32_t, Connection>& connections() const { return connections_; }
   /// The messages of these topics, oldest first; at one time in the order of the file.
-  std::vector<MessagePlace> messages(const std::vector<std::string>& topics) const;
-  /// The bytes of a message, valid until the next call. Throws BagError for a damaged chunk or a place that holds no
-  /// message of its connection.
+  std::vector<MessagePlace> messages(const std::vector<std::string>& topics);
+  /// The bytes of a message, valid until the next call; each message at most once after messages(). Throws BagError for
+  /// a damaged chunk or a place that holds no message of its connection.
   Bytes read(const MessagePlace& message);
   /// What could not be used, one line each; empty for a sound bag. More than a hundred are not listed.
   const std::vector<std::string>& damages() const { return damages_; }
@@ -56,10 +57,6 @@ class BagReader {
     std::string compression;
     Index index = Index::kAbsent;
   };
-  struct LoadedChunk {
-    std::uint32_t index = 0;
-    std::vector<std::uint8_t> content;
-  };
 
   void walk();
   void take_noting(const RecordPlace& place);
@@ -72,13 +69,20 @@ class BagReader {
   void search_unindexed();
   void search(std::uint32_t chunk, bool messages);
   const std::vector<std::uint8_t>& load(std::uint32_t chunk);
+  void take_unread(std::uint64_t bytes);
   void note(const std::string& damage);
 
   BagFile file_;
+  io::UnpackLimit unpack_limit_;
   std::vector<Chunk> chunks_;
   std::vector<MessagePlace> messages_;
   std::map<std::uint32_t, Connection> connections_;
-  std::deque<LoadedChunk> loaded_;  ///< the last ones used
+  std::map<std::uint32_t, std::vector<std::uint8_t>> loaded_;  ///< contents of the chunks last used
+  std::deque<std::uint32_t> loading_order_;                    ///< of them, the oldest first
+  std::uint64_t loaded_bytes_ = 0;
+  std::uint64_t described_bytes_ = 0;  ///< definitions
+  std::uint64_t unpacked_bytes_ = 0;   ///< of all chunks
+  std::uint64_t unread_bytes_ = 0;     ///< of them, since messages(): messages do not overlap
   std::vector<std::string> damages_;
   bool indexed_ = false;
   bool complete_ = true;  ///< connections follow the last chunk: its index was not cut

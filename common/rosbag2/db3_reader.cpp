@@ -5,7 +5,10 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 namespace rtd::rosbag2 {
 namespace {
@@ -14,8 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
 constexpr std::int64_t kMaxHeapBytes = 1LL << 30;  // SQLite's own, of the whole process
-constexpr std::size_t kMaxTopics = 10'000;
-constexpr int kStepInstructions = 1000;  // of SQLite's machine between two calls of the progress handler
+constexpr std::size_t kMaxTopics = 10'000, kLongestName = 255;
+constexpr std::size_t kMostDescribed = 16 << 20;  // of definitions: topics of one type have copies of it
+constexpr int kStepInstructions = 1000;           // of SQLite's machine between two calls of the progress handler
 
 std::uint64_t size_of(const fs::path& path) {
   std::error_code none;
@@ -118,7 +122,7 @@ void Db3Reader::bound() {
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   sqlite3_exec(database, "PRAGMA query_only=1; PRAGMA cell_size_check=1; PRAGMA mmap_size=0", nullptr, nullptr,
                nullptr);
-  steps_left_ = 10'000 + bytes_ / 10;  // a row takes 20 instructions and at least 8 bytes
+  steps_left_ = 10'000 + bytes_ / 100;  // a row takes 20 instructions and at least 8 bytes
   sqlite3_progress_handler(database, kStepInstructions, count_step, &steps_left_);
 }
 
@@ -130,34 +134,55 @@ void Db3Reader::require_tables() {
     fail(std::string("no readable SQLite file: ") + sqlite3_errmsg(database_.get()));
   if (tables.integer(0) != 2)
     fail("an SQLite file, but no rosbag2 recording: it lacks the table 'topics' or 'messages'");
+  Statement computed(database_.get(),
+                     "SELECT (SELECT count(*) FROM pragma_table_xinfo('topics') WHERE hidden) + "
+                     "(SELECT count(*) FROM pragma_table_xinfo('messages') WHERE hidden) + "
+                     "(SELECT count(*) FROM pragma_table_xinfo('message_definitions') WHERE hidden)");
+  if (!computed.usable() || computed.step() != SQLITE_ROW || computed.integer(0) != 0)
+    fail("no rosbag2 recording: it has columns that are computed");
+}
+
+/// Of what a row holds. Those of a crafted file may hold the same bytes, all of it each.
+void Db3Reader::take(std::size_t bytes) {
+  if (bytes > unread_) fail("its rows hold more than the file: they overlap");
+  unread_ -= bytes;
 }
 
 void Db3Reader::read_topics() {
   Statement rows(database_.get(), "SELECT id, name, type, serialization_format FROM topics NOT INDEXED");
   if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
+  unread_ = bytes_;
   int result = rows.step();
-  for (; result == SQLITE_ROW && topics_.size() < kMaxTopics; result = rows.step())
-    topics_[rows.integer(0)] = {rows.text(1), rows.text(2), rows.text(3), 0, {}, {}, {}};
+  for (; result == SQLITE_ROW && topics_.size() < kMaxTopics; result = rows.step()) {
+    const Db3Topic topic{rows.text(1), rows.text(2), rows.text(3), 0, {}, {}, {}};
+    take(topic.name.size() + topic.type.size() + topic.serialization_format.size());
+    if (std::max(topic.name.size(), topic.type.size()) <= kLongestName) topics_[rows.integer(0)] = topic;
+  }
   if (result == SQLITE_ROW) fail("has more than " + std::to_string(kMaxTopics) + " topics");
   if (result != SQLITE_DONE) fail(std::string("its topics cannot be read: ") + sqlite3_errmsg(database_.get()));
 }
 
 /// Of columns and tables that not every version has: a query that one lacks is not usable.
 void Db3Reader::read_extras() {
+  unread_ = bytes_;
   Statement qos(database_.get(), "SELECT id, offered_qos_profiles FROM topics NOT INDEXED");
   while (qos.usable() && qos.step() == SQLITE_ROW) {
-    if (const auto topic = topics_.find(qos.integer(0)); topic != topics_.end())
-      topic->second.offered_qos = qos.text(1);
+    const std::string profiles = qos.text(1);
+    take(profiles.size());
+    if (const auto topic = topics_.find(qos.integer(0)); topic != topics_.end()) topic->second.offered_qos = profiles;
   }
   Statement types(database_.get(),
                   "SELECT topic_type, encoding, encoded_message_definition FROM message_definitions NOT INDEXED");
+  std::map<std::string, std::pair<std::string, std::string>> definitions;
   while (types.usable() && types.step() == SQLITE_ROW) {
-    const std::string type = types.text(0), encoding = types.text(1), definition = types.text(2);
-    for (auto& [id, topic] : topics_) {
-      if (topic.type != type) continue;
-      topic.definition_encoding = encoding;
-      topic.definition = definition;
-    }
+    auto& [encoding, text] = definitions[types.text(0)] = {types.text(1), types.text(2)};
+    take(encoding.size() + text.size());
+  }
+  std::size_t described_bytes = 0;
+  for (auto& [id, topic] : topics_) {
+    const auto found = definitions.find(topic.type);
+    if (found == definitions.end() || (described_bytes += found->second.second.size()) > kMostDescribed) continue;
+    std::tie(topic.definition_encoding, topic.definition) = found->second;
   }
 }
 
@@ -185,10 +210,12 @@ void Db3Reader::read_places() {
   std::ranges::stable_sort(places_, {}, &Db3Place::time_ns);
 }
 
-std::vector<Db3Place> Db3Reader::messages(const std::vector<std::string>& topics) const {
+std::vector<Db3Place> Db3Reader::messages(const std::vector<std::string>& topics) {
+  unread_ = bytes_;
+  const std::set<std::string> names(topics.begin(), topics.end());
   std::set<std::int64_t> wanted;
   for (const auto& [id, topic] : topics_) {
-    if (std::ranges::count(topics, topic.name) != 0) wanted.insert(id);
+    if (names.contains(topic.name)) wanted.insert(id);
   }
   std::vector<Db3Place> found;
   std::ranges::copy_if(places_, std::back_inserter(found), [&](const auto& p) { return wanted.contains(p.topic); });
@@ -196,14 +223,16 @@ std::vector<Db3Place> Db3Reader::messages(const std::vector<std::string>& topics
 }
 
 std::vector<std::uint8_t> Db3Reader::read(const Db3Place& place) {
-  steps_left_ = 10'000;
+  steps_left_ = 100;
   Statement row(database_.get(), "SELECT data FROM messages WHERE rowid = ?");
   row.bind(1, place.row);
   if (row.step() != SQLITE_ROW || row.type(0) != SQLITE_BLOB) {
     fail("message " + std::to_string(place.row) + " of " + topics_.at(place.topic).name +
          " is damaged: " + sqlite3_errmsg(database_.get()));
   }
-  return row.bytes(0);
+  std::vector<std::uint8_t> data = row.bytes(0);
+  take(data.size());
+  return data;
 }
 
 }  // namespace rtd::rosbag2

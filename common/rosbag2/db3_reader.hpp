@@ -44,8 +44,8 @@ class Db3Reader {
   /// By the id that Db3Place gives.
   const std::map<std::int64_t, Db3Topic>& topics() const { return topics_; }
   /// The messages of these topics, oldest first; at one time in the order of the file.
-  std::vector<Db3Place> messages(const std::vector<std::string>& topics) const;
-  /// Throws Db3Error when the message is damaged.
+  std::vector<Db3Place> messages(const std::vector<std::string>& topics);
+  /// Each message at most once after messages(). Throws Db3Error when it is damaged.
   std::vector<std::uint8_t> read(const Db3Place& place);
   /// What could not be used, one line each; empty for a sound file.
   const std::vector<std::string>& damages() const { return damages_; }
@@ -61,10 +61,12 @@ class Db3Reader {
   void read_topics();
   void read_extras();
   void read_places();
+  void take(std::size_t bytes);
   [[noreturn]] void fail(const std::string& what) const;
 
   const std::filesystem::path path_;
   std::uint64_t bytes_ = 0;       ///< of the file and its -wal
+  std::uint64_t unread_ = 0;      ///< of them, by the query in work: rows do not overlap
   std::uint64_t steps_left_ = 0;  ///< of the progress handler
   std::unique_ptr<sqlite3, Close> database_;
   std::map<std::int64_t, Db3Topic> topics_;
