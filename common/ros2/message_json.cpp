@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 using Kind = MessageField::Kind;
 
 constexpr std::size_t kValuesOfMessage = 4;
-constexpr std::size_t kFreeSteps = 100'000, kStepsPerByte = 16;  // a value has a byte, and a few messages around it
+constexpr std::size_t kFreeSteps = 1'000, kStepsPerByte = 16;  // a value has a byte, and a few messages around it
 
 ros::Bytes body_of(ros::Bytes cdr) {
   constexpr std::size_t kHeaderBytes = 4;

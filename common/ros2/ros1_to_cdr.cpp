@@ -38,12 +38,16 @@ std::string lower_snake(const std::string& name) {
 
 class Transcription {
  public:
-  Transcription(const ros::MessageFields& types, ros::Bytes ros1) : types_(types), in_(ros1) {
+  Transcription(const ros::MessageFields& types, ros::Bytes ros1)
+      : types_(types), in_(ros1), steps_left_(kFreeSteps + kStepsPerByte * ros1.size()) {
     cdr_.reserve(ros1.size() + ros1.size() / 8 + kHeaderBytes);
     cdr_ = {0, 1, 0, 0};
   }
+  /// Types can be made of nothing: what they claim must not cost more than the bytes are worth.
   void message(const std::string& type) {
     const std::vector<ros::MessageField>& fields = types_.at(type);
+    if (steps_left_ <= fields.size()) throw ros::WireError("the type claims more fields than the message has bytes");
+    steps_left_ -= 1 + fields.size();
     for (const ros::MessageField& field : fields) {
       if (field.name == "seq" && type == kHeader) {
         in_.take(sizeof(std::uint32_t));
@@ -59,7 +63,7 @@ class Transcription {
   }
 
  private:
-  static constexpr std::size_t kHeaderBytes = 4;
+  static constexpr std::size_t kHeaderBytes = 4, kFreeSteps = 1'000, kStepsPerByte = 16;
 
   void read(const ros::MessageField& field) {
     std::size_t count = field.kind == Kind::kArray ? field.capacity : 1;
@@ -97,6 +101,7 @@ class Transcription {
 
   const ros::MessageFields& types_;
   ros::ByteCursor in_;
+  std::size_t steps_left_;
   std::vector<std::uint8_t> cdr_;
 };
 

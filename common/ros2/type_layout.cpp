@@ -3,7 +3,7 @@
 #include "common/ros2/type_layout.hpp"
 
 #include <cctype>
-#include <set>
+#include <map>
 #include <sstream>
 #include <vector>
 
@@ -30,37 +30,31 @@ std::vector<std::string> words_of(const std::string& idl) {
   return words;
 }
 
-class LayoutReader {
- public:
-  explicit LayoutReader(const std::string& idl) : words_(words_of(idl)) {}
-
-  std::string layout_of(const std::string& struct_name) {
-    if (!begun_.insert(struct_name).second) return {};
-    std::string own, others;
-    for (std::size_t i = body_of(struct_name); i < words_.size() && words_[i] != "}"; ++i) {
-      own += words_[i] + ' ';
-      others += layout_of(words_[i]);
-    }
-    return own.empty() ? own : struct_name + ": " + own + others;
-  }
-
- private:
-  /// Behind "struct NAME {"; the end when there is none.
-  std::size_t body_of(const std::string& struct_name) const {
-    for (std::size_t i = 0; i + 2 < words_.size(); ++i) {
-      if (words_[i] == "struct" && words_[i + 1] == struct_name && words_[i + 2] == "{") return i + 3;
-    }
-    return words_.size();
-  }
-
-  const std::vector<std::string> words_;
-  std::set<std::string> begun_;  ///< a damaged text may define a type by itself
-};
+/// Where the body of each struct begins, behind "struct NAME {".
+std::map<std::string, std::size_t> bodies_in(const std::vector<std::string>& words) {
+  std::map<std::string, std::size_t> bodies;
+  for (std::size_t i = 0; i + 3 < words.size(); ++i)
+    if (words[i] == "struct" && words[i + 2] == "{") bodies.try_emplace(words[i + 1], i + 3);
+  return bodies;
+}
 
 }  // namespace
 
 std::string layout_in(const std::string& idl, const std::string& struct_name) {
-  return LayoutReader(idl).layout_of(struct_name);
+  const std::vector<std::string> words = words_of(idl);
+  std::map<std::string, std::size_t> bodies = bodies_in(words);  // that are not written yet
+  std::string layout;
+  std::vector<std::string> structs{struct_name};
+  for (std::size_t next = 0; next < structs.size(); ++next) {
+    const auto body = bodies.extract(structs[next]);
+    if (!body || words[body.mapped()] == "}") continue;
+    layout += structs[next] + ": ";
+    for (std::size_t i = body.mapped(); i < words.size() && words[i] != "}"; ++i) {
+      layout += words[i] + ' ';
+      if (bodies.contains(words[i])) structs.push_back(words[i]);
+    }
+  }
+  return layout;
 }
 
 }  // namespace rtd::ros2

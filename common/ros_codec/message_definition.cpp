@@ -34,6 +34,8 @@ bool is_name(const std::string& text) {
 }
 
 bool is_type_name(const std::string& text) {
+  constexpr std::size_t kLongest = 255;  // fields repeat the name of their package
+  if (text.size() > kLongest) return false;
   const std::size_t slash = text.find('/');
   return slash == std::string::npos ? is_name(text) : is_name(text.substr(0, slash)) && is_name(text.substr(slash + 1));
 }
