@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kDepth = 16;  // of an OctoMap: cells from -32768 to 32767
 constexpr std::int64_t kMaxCells = 200'000'000;
+constexpr std::size_t kMaxBlocks = 80'000;  // of 4 KiB, which one node of two bytes can ask for
 
 /// The cells of the nodes of a .bt file: two bytes a node, two bits a child, children with children of their own
 /// behind it, first to last.
@@ -36,24 +37,28 @@ class NodeReader {
   }
 
  private:
-  void fill(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
-    filled_ += side * side * side;
+  void fill(const Eigen::Vector3i& corner, int side, Space space) {
+    filled_ += std::int64_t{side} * side * side;
     if (filled_ > kMaxCells) throw OctomapError("it has more than 200 million cells");
     if (side >= CellBlocks<Space>::kSide) return fill_blocks(corner, side, space);
-    for (std::int64_t i = 0; i < side * side * side; ++i) {
-      cells_.set(corner + Eigen::Vector3i(static_cast<int>(i % side), static_cast<int>(i / side % side),
-                                          static_cast<int>(i / side / side)),
-                 space);
+    auto& block = block_at(CellBlocks<Space>::block_of(corner));
+    for (int i = 0; i < side * side * side; ++i) {
+      const Eigen::Vector3i at = corner + Eigen::Vector3i(i % side, i / side % side, i / side / side);
+      block[static_cast<std::size_t>(CellBlocks<Space>::index(at.x(), at.y(), at.z()))] = space;
     }
   }
 
+  CellBlocks<Space>::Block& block_at(const Eigen::Vector3i& place) {
+    if (auto* const block = cells_.at(place, kMaxBlocks)) return *block;
+    throw OctomapError("its cells lie in more than 80000 blocks of 16 x 16 x 16");
+  }
+
   /// A cube of whole blocks.
-  void fill_blocks(const Eigen::Vector3i& corner, std::int64_t side, Space space) {
+  void fill_blocks(const Eigen::Vector3i& corner, int side, Space space) {
     const Eigen::Vector3i first = CellBlocks<Space>::block_of(corner);
-    const auto count = static_cast<int>(side / CellBlocks<Space>::kSide);
+    const int count = side / CellBlocks<Space>::kSide;
     for (int i = 0; i < count * count * count; ++i) {
-      const Eigen::Vector3i at = first + Eigen::Vector3i(i % count, i / count % count, i / count / count);
-      if (auto* const block = cells_.at(at)) block->fill(space);
+      block_at(first + Eigen::Vector3i(i % count, i / count % count, i / count / count)).fill(space);
     }
   }
 

@@ -20,7 +20,9 @@ namespace rtd::vision {
 namespace {
 
 constexpr png_uint_32 kMaxPngSide = 32768;
-constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of texts and colour profiles, which are not needed here
+constexpr png_alloc_size_t kMaxChunkBytes = 1 << 20;  // of colour profiles, which are not needed here
+constexpr std::array<png_byte, 15> kTexts = {'t', 'E', 'X', 't', 0,   'z', 'T', 'X',
+                                             't', 0,   'i', 'T', 'X', 't', 0};  // unread
 constexpr double kRedOfGrey = 0.299, kGreenOfGrey = 0.587;
 
 struct PngErrors {
@@ -63,6 +65,7 @@ class PngDecoder {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
     png_set_user_limits(png_, kMaxPngSide, kMaxPngSide);
     png_set_chunk_malloc_max(png_, kMaxChunkBytes);
+    png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, kTexts.data(), kTexts.size() / 5);
     png_set_read_fn(png_, this, [](png_structp png, png_bytep to, png_size_t count) {
       static_cast<PngDecoder*>(png_get_io_ptr(png))->give(to, count);
     });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -81,16 +82,15 @@ std::vector<Link> read_links(const fs::path& file) {
   return links;
 }
 
-/// Follows the links, each once and in both directions, to the camera.
-std::optional<Eigen::Isometry3d> T_frame_camera(const std::string& frame, std::vector<Link> links) {
+/// Follows the links in both directions to the camera; passes through each frame once.
+std::optional<Eigen::Isometry3d> T_frame_camera(const std::string& frame, const std::vector<Link>& links,
+                                                std::set<std::string>& passed) {
   if (frame == kColorFrame) return Eigen::Isometry3d::Identity();
-  for (std::size_t i = 0; i < links.size(); ++i) {
-    const Link link = links[i];
+  if (!passed.insert(frame).second) return std::nullopt;
+  for (const Link& link : links) {
     if (link.parent != frame && link.child != frame) continue;
-    std::vector<Link> others = links;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     const bool down = link.parent == frame;
-    if (const auto T_next_camera = T_frame_camera(down ? link.child : link.parent, others))
+    if (const auto T_next_camera = T_frame_camera(down ? link.child : link.parent, links, passed))
       return (down ? link.T_parent_child : link.T_parent_child.inverse()) * *T_next_camera;
   }
   return std::nullopt;
@@ -126,7 +126,8 @@ Groundtruth read_groundtruth(const fs::path& file) {
 geometry::Trajectory of_camera(const fs::path& sequence) {
   Groundtruth truth = read_groundtruth(sequence / "groundtruth.txt");
   const fs::path file = sequence / "trans_matrix.yaml";
-  const auto T_body_camera = T_frame_camera(truth.body, read_links(file));
+  std::set<std::string> passed;
+  const auto T_body_camera = T_frame_camera(truth.body, read_links(file), passed);
   if (!T_body_camera)
     throw SourceError(file.string() + ": no transforms lead from " + truth.body + " to " + kColorFrame +
                       ": take the file from the dataset again");

@@ -54,6 +54,19 @@ TEST_F(PrepareOpenloris, makes_a_folder_whose_images_are_there_and_can_be_made_a
   EXPECT_THAT(testing_support::read_text(into_ / "rgb.txt"), HasSubstr("1.0 color/1.png"));
 }
 
+TEST_F(PrepareOpenloris, frames_that_are_all_linked_to_each_other_take_no_longer) {
+  std::string links = "%YAML:1.0\ntrans_matrix:\n";
+  for (int a = 0; a < 20; ++a) {
+    for (int b = 0; b < 20; ++b) {
+      links += "   -\n      parent_frame: " + (a == 0 ? "base_link" : "f" + std::to_string(a)) +
+               "\n      child_frame: f" + std::to_string(b) +
+               "\n      matrix: [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]\n";
+    }
+  }
+  data_.write("cafe1-1/trans_matrix.yaml", links);
+  EXPECT_THAT([&] { prepare(); }, testing::ThrowsMessage<camera::SourceError>(HasSubstr("no transforms lead")));
+}
+
 TEST_F(PrepareOpenloris, names_the_file_that_it_cannot_use) {
   data_.write("cafe1-1/sensors.yaml", "%YAML:1.0\nother: 1\n");
   EXPECT_THAT([&] { prepare(); }, testing::ThrowsMessage<camera::SourceError>(HasSubstr("sensors.yaml")));
