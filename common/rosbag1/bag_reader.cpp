@@ -79,9 +79,9 @@ void BagReader::take(const RecordPlace& place) {
   if (op == Op::kChunk) {
     chunks_.push_back(
         {place.data_begin, place.data_bytes, header.number<std::uint32_t>("size"), header.text("compression")});
-    unpacked_bytes_ += chunks_.back().size;
-    if (!unpack_limit_.take(chunks_.back().size))
-      throw BagError(file_.path().string() + ": its chunks unpack to too much for its size");
+    Chunk& chunk = chunks_.back();
+    chunk.refused = chunk.size > kMaxChunkBytes || !unpack_limit_.take(chunk.size);
+    unpacked_bytes_ += chunk.refused ? 0 : chunk.size;
   }
   if (op != Op::kIndex && op != Op::kConnection) return;
   const std::vector<std::uint8_t> data = file_.read(place.data_begin, place.data_bytes);
@@ -217,10 +217,8 @@ void BagReader::take_unread(std::uint64_t bytes) {
 const std::vector<std::uint8_t>& BagReader::load(std::uint32_t chunk) {
   if (const auto loaded = loaded_.find(chunk); loaded != loaded_.end()) return loaded->second;
   const Chunk& wanted = chunks_.at(chunk);
-  if (wanted.size > kMaxChunkBytes) {
-    throw ros::WireError("a chunk claims " + std::to_string(wanted.size) + " bytes, at most " +
-                         std::to_string(kMaxChunkBytes) + " are read");
-  }
+  if (wanted.refused)
+    throw ros::WireError("a chunk claims " + std::to_string(wanted.size) + " bytes, too many for the size of the bag");
   std::vector<std::uint8_t> content =
       decompress(wanted.compression, file_.read(wanted.begin, wanted.bytes), wanted.size);
   for (loaded_bytes_ += content.size(); loaded_bytes_ > kLoadedBytes && !loaded_.empty(); loading_order_.pop_front()) {

@@ -56,6 +56,7 @@ class BagReader {
     std::uint64_t begin = 0, bytes = 0, size = 0;  ///< data in the file; size once decompressed
     std::string compression;
     Index index = Index::kAbsent;
+    bool refused = false;  ///< it unpacks to too much
   };
 
   void walk();

@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
 constexpr std::int64_t kMaxHeapBytes = 1LL << 30;  // SQLite's own, of the whole process
 constexpr std::size_t kMaxTopics = 10'000, kLongestName = 255;
+constexpr std::uint64_t kRowBytes = 8;            // at least
 constexpr std::size_t kMostDescribed = 16 << 20;  // of definitions: topics of one type have copies of it
 constexpr int kStepInstructions = 1000;           // of SQLite's machine between two calls of the progress handler
 
@@ -73,15 +74,19 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-/// The SQLite progress handler: ends a query that a crafted file keeps busy.
-int count_step(void* steps_left) {
-  auto& left = *static_cast<std::uint64_t*>(steps_left);
-  if (left == 0) return 1;
-  --left;
-  return 0;
-}
-
 }  // namespace
+
+/// The SQLite progress handler: ends a query that a crafted file keeps busy. Rows may share long chains of pages.
+int Db3Reader::count_step(void* reader) {
+  constexpr int kPagesOfStep = 100;
+  auto& [database, left] = static_cast<Db3Reader*>(reader)->work_;
+  int found = 0, read = 0, ignored = 0;
+  sqlite3_db_status(database, SQLITE_DBSTATUS_CACHE_HIT, &found, &ignored, 1);
+  sqlite3_db_status(database, SQLITE_DBSTATUS_CACHE_MISS, &read, &ignored, 1);
+  const auto steps = static_cast<std::uint64_t>(1 + (found + read) / kPagesOfStep);
+  left -= std::min(left, steps);
+  return left == 0 ? 1 : 0;
+}
 
 void Db3Reader::Close::operator()(sqlite3* database) const {
   sqlite3_close_v2(database);
@@ -122,8 +127,8 @@ void Db3Reader::bound() {
   sqlite3_db_config(database, SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
   sqlite3_exec(database, "PRAGMA query_only=1; PRAGMA cell_size_check=1; PRAGMA mmap_size=0", nullptr, nullptr,
                nullptr);
-  steps_left_ = 10'000 + bytes_ / 100;  // a row takes 20 instructions and at least 8 bytes
-  sqlite3_progress_handler(database, kStepInstructions, count_step, &steps_left_);
+  work_ = {database, 10'000 + bytes_ / 100};  // a row takes 20 instructions
+  sqlite3_progress_handler(database, kStepInstructions, count_step, this);
 }
 
 void Db3Reader::require_tables() {
@@ -144,8 +149,9 @@ void Db3Reader::require_tables() {
 
 /// Of what a row holds. Those of a crafted file may hold the same bytes, all of it each.
 void Db3Reader::take(std::size_t bytes) {
-  if (bytes > unread_) fail("its rows hold more than the file: they overlap");
-  unread_ -= bytes;
+  const bool overlaps = bytes >= unread_;
+  unread_ -= std::min<std::uint64_t>(bytes, unread_);
+  if (overlaps) fail("its rows hold more than the file: they overlap");
 }
 
 void Db3Reader::read_topics() {
@@ -192,7 +198,8 @@ void Db3Reader::read_places() {
   if (!rows.usable()) fail(std::string("no rosbag2 recording: ") + sqlite3_errmsg(database_.get()));
   std::uint64_t strays = 0;
   int result = rows.step();
-  for (; result == SQLITE_ROW; result = rows.step()) {
+  for (const std::uint64_t most = bytes_ / kRowBytes; result == SQLITE_ROW && places_.size() < most;
+       result = rows.step()) {
     const auto topic = topics_.find(rows.integer(1));
     if (topic == topics_.end()) {
       ++strays;
@@ -202,8 +209,9 @@ void Db3Reader::read_places() {
     places_.push_back({rows.integer(0), topic->first, rows.integer(2)});
   }
   if (result != SQLITE_DONE) {
-    damages_.push_back(path_.string() + ": damaged after " + std::to_string(places_.size()) +
-                       " messages: " + sqlite3_errmsg(database_.get()) + "; what follows is lost");
+    damages_.push_back(path_.string() + ": damaged after " + std::to_string(places_.size()) + " messages: " +
+                       (result == SQLITE_ROW ? "more rows than bytes" : sqlite3_errmsg(database_.get())) +
+                       "; what follows is lost");
   }
   if (strays != 0)
     damages_.push_back(path_.string() + ": " + std::to_string(strays) + " messages belong to no topic of the file");
@@ -223,7 +231,8 @@ std::vector<Db3Place> Db3Reader::messages(const std::vector<std::string>& topics
 }
 
 std::vector<std::uint8_t> Db3Reader::read(const Db3Place& place) {
-  steps_left_ = 100;
+  take(0);
+  work_.steps_left = 10'000;
   Statement row(database_.get(), "SELECT data FROM messages WHERE rowid = ?");
   row.bind(1, place.row);
   if (row.step() != SQLITE_ROW || row.type(0) != SQLITE_BLOB) {

@@ -55,6 +55,13 @@ class Db3Reader {
     void operator()(sqlite3* database) const;
   };
 
+  /// Of the progress handler.
+  struct Work {
+    sqlite3* database = nullptr;
+    std::uint64_t steps_left = 0;
+  };
+
+  static int count_step(void* reader);
   void open();
   void bound();
   void require_tables();
@@ -65,9 +72,9 @@ class Db3Reader {
   [[noreturn]] void fail(const std::string& what) const;
 
   const std::filesystem::path path_;
-  std::uint64_t bytes_ = 0;       ///< of the file and its -wal
-  std::uint64_t unread_ = 0;      ///< of them, by the query in work: rows do not overlap
-  std::uint64_t steps_left_ = 0;  ///< of the progress handler
+  std::uint64_t bytes_ = 0;   ///< of the file and its -wal
+  std::uint64_t unread_ = 0;  ///< of them, by the query in work: rows do not overlap
+  Work work_;
   std::unique_ptr<sqlite3, Close> database_;
   std::map<std::int64_t, Db3Topic> topics_;
   std::vector<Db3Place> places_;

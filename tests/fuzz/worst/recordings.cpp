@@ -159,6 +159,52 @@ fs::path database(const fs::path& folder, const std::string& statements) {
   return file;
 }
 
+void put_number(std::string& page, std::size_t at, std::size_t value, std::size_t bytes) {
+  for (std::size_t i = 0; i < bytes; ++i) page[at + i] = static_cast<char>(value >> 8 * (bytes - 1 - i));
+}
+
+/// A page of SQLite's tree: as many cells as it has room for, all the same.
+std::string tree_page(char type, const std::string& cell, std::size_t last_child) {
+  constexpr std::size_t kPage = 512;
+  const std::size_t head = type == 5 ? 12 : 8, count = (kPage - head) / (cell.size() + 2);
+  std::string page(kPage, '\0');
+  page[0] = type;
+  put_number(page, 3, count, 2);
+  put_number(page, 5, kPage - count * cell.size(), 2);
+  if (type == 5) put_number(page, 8, last_child, 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = kPage - (i + 1) * cell.size();
+    put_number(page, head + 2 * i, at, 2);
+    page.replace(at, cell.size(), cell);
+  }
+  return page;
+}
+
+/// Millions of rows that are one row of half the file, whose time comes last.
+fs::path database_of_one_row(const fs::path& folder, std::size_t bytes, const std::string& topics) {
+  constexpr std::size_t kPage = 512, kRoot = 2;  // of the first table
+  const fs::path file = database(folder,
+                                 "PRAGMA page_size=512;CREATE TABLE messages(data BLOB,timestamp INTEGER,topic_id "
+                                 "INTEGER);INSERT INTO messages VALUES(zeroblob(" +
+                                     std::to_string(bytes / 2) + "),1000,1);" + topics);
+  std::ifstream in(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), {}};
+  const std::size_t pages = content.size() / kPage, root = (kRoot - 1) * kPage;
+  const auto cell_at = static_cast<std::size_t>(static_cast<unsigned char>(content[root + 8]) << 8 |
+                                                static_cast<unsigned char>(content[root + 9]));
+  std::string page = tree_page(13, content.substr(root + cell_at, kPage - cell_at), 0);
+  for (std::size_t child = pages + 1; child < pages + 4; ++child) {
+    content += page;
+    std::string cell(5, '\1');
+    put_number(cell, 0, child, 4);
+    page = tree_page(5, cell, child);
+  }
+  content.replace(root, kPage, page);
+  put_number(content, 28, pages + 3, 4);
+  std::ofstream(file, std::ios::binary) << content;
+  return file;
+}
+
 std::string rows(std::size_t count, const std::string& insert) {
   return "WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " + std::to_string(count) + ") " +
          insert;
@@ -175,6 +221,7 @@ std::vector<Case> databases(std::size_t bytes, const fs::path& folder) {
     return Case{"db3: " + name, [file = database(folder, "BEGIN;" + statements + "COMMIT;")] { play(file); }};
   };
   return {
+      {"db3: one row again and again", [file = database_of_one_row(folder, bytes, topics)] { play(file); }},
       play_of("many messages", topics + messages + rows(bytes / 20, "INSERT INTO messages SELECT i,1,i,x'' FROM n;")),
       play_of("computed times",
               topics +
