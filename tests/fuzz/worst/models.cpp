@@ -50,11 +50,11 @@ std::string octomap_of_blocks(std::size_t bytes) {
 }
 
 std::string map_file(std::size_t bytes, std::uint32_t keyframes) {
-  const auto each = static_cast<std::uint32_t>(bytes / keyframes / 140);
+  const auto each = static_cast<std::uint32_t>(1 + bytes / keyframes / 140);
   io::MemorySink sink;
   slam::write_map(
       slam::take_snapshot(test_support::sample_map(
-          {.keyframes = keyframes, .features = each, .seen_per_keyframe = each, .new_per_keyframe = 1, .seed = 1})),
+          {.keyframes = keyframes, .features = each + 1, .seen_per_keyframe = each, .new_per_keyframe = 1, .seed = 1})),
       sink);
   return {reinterpret_cast<const char*>(sink.bytes().data()), sink.bytes().size()};
 }
