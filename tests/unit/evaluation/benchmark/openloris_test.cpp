@@ -55,14 +55,13 @@ TEST_F(PrepareOpenloris, makes_a_folder_whose_images_are_there_and_can_be_made_a
 }
 
 TEST_F(PrepareOpenloris, frames_that_are_all_linked_to_each_other_take_no_longer) {
+  const std::string matrix =
+      "      matrix: !!opencv-matrix\n         rows: 4\n         cols: 4\n         dt: d\n"
+      "         data: [ 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1. ]\n";
+  const auto name = [](int frame) { return frame == 0 ? "base_link" : "f" + std::to_string(frame); };
   std::string links = "%YAML:1.0\ntrans_matrix:\n";
-  for (int a = 0; a < 20; ++a) {
-    for (int b = 0; b < 20; ++b) {
-      links += "   -\n      parent_frame: " + (a == 0 ? "base_link" : "f" + std::to_string(a)) +
-               "\n      child_frame: f" + std::to_string(b) +
-               "\n      matrix: [1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]\n";
-    }
-  }
+  for (int i = 0; i < 400; ++i)
+    links += "   -\n      parent_frame: " + name(i / 20) + "\n      child_frame: " + name(i % 20) + "\n" + matrix;
   data_.write("cafe1-1/trans_matrix.yaml", links);
   EXPECT_THAT([&] { prepare(); }, testing::ThrowsMessage<camera::SourceError>(HasSubstr("no transforms lead")));
 }
