@@ -12,6 +12,7 @@
 
 #include "common/camera/calibration_forms.hpp"
 #include "common/camera/frame_source.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
@@ -213,10 +214,13 @@ Calibration parse_calibration(const std::string& text, const std::string& origin
   return from_values(std::move(values), origin);
 }
 
-Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px) {
-  const std::optional<std::string> text = io::read_text(file);
-  if (!text) throw SourceError("calibration " + file.string() + " cannot be read");
-  return parse_calibration(*text, file.string(), image_px);
+Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px,
+                             const std::filesystem::path& below) {
+  try {
+    return parse_calibration(io::read_file(file, io::kCalibration, below), file.string(), image_px);
+  } catch (const io::IoError& error) {
+    throw SourceError("calibration " + why_unread(error));
+  }
 }
 
 std::optional<int> tum_family(const std::filesystem::path& folder) {
@@ -235,7 +239,7 @@ std::optional<Calibration> known_calibration(const std::filesystem::path& folder
 
 Calibration load_calibration(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "calibration.yaml";
-  if (const auto text = io::read_text(file)) return parse_calibration(*text, file.string());
+  if (std::error_code unknown; std::filesystem::exists(file, unknown)) return read_calibration(file);
   if (std::optional<Calibration> known = known_calibration(folder)) return *known;
   throw SourceError("no calibration for " + folder.string() + ": write " + file.string() +
                     " with one 'key: value' a line, keys " + kAllowedKeys +

@@ -32,8 +32,10 @@ struct Calibration {
 Calibration parse_calibration(const std::string& text, const std::string& origin,
                               std::optional<cv::Size> image_px = std::nullopt);
 
-/// The same of a file. Throws SourceError also when it cannot be read.
-Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px = std::nullopt);
+/// The same of a file, which must not lead out of the folder `below` (io::open_regular; empty: it may). Throws
+/// SourceError also when it cannot be read.
+Calibration read_calibration(const std::filesystem::path& file, std::optional<cv::Size> image_px = std::nullopt,
+                             const std::filesystem::path& below = {});
 
 /// The pinhole camera of these values; `origin` is for messages. A negative fy is taken for the positive one. Throws
 /// SourceError.

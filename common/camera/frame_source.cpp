@@ -3,6 +3,7 @@
 #include "common/camera/frame_source.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -62,6 +63,11 @@ std::uint64_t SourceCounters::skipped_total() const {
 std::uint64_t SourceCounters::frames_left_out() const {
   const std::uint64_t alone = of(SkipReason::kNoDepthPartner);
   return skipped_total() - alone + std::min(alone, depth_alone);
+}
+
+std::string why_unread(const io::IoError& error) {
+  const std::string text = error.what();
+  return error.code().value() == EXDEV ? text + "; " + kOutsideAdvice : text;
 }
 
 void SkipLog::add(SkippedInput input) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
+#include "common/io/byte_sink.hpp"
 #include "common/vision/rgbd_image.hpp"
 
 namespace rtd::camera {
@@ -148,6 +149,10 @@ class FrameSource {
   /// What was skipped since the last call, for the log.
   virtual std::vector<SkippedInput> take_skipped() = 0;
 };
+
+inline constexpr const char* kOutsideAdvice = "add ?outside=1 to the source to use it all the same";
+/// Why a file of a folder cannot be read, for people: with that advice where it leads out of the folder.
+std::string why_unread(const io::IoError& error);
 
 /// Counts the skipped inputs of a source and keeps their log lines until take().
 class SkipLog {

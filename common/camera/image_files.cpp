@@ -5,29 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/camera/folder/depth_formats.hpp"
+#include "common/io/input_file.hpp"
 #include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
 namespace {
 
 using Bytes = std::span<const std::uint8_t>;
-
-std::optional<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) return std::nullopt;
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream && !bytes.empty()) return std::nullopt;
-  return bytes;
-}
 
 std::string_view to_view(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -61,6 +50,33 @@ std::string pixel_type_name(const cv::Mat& image) {
                                                          "32-bit", "32-bit float", "64-bit float", "16-bit float"};
   return std::string(kDepths.at(static_cast<std::size_t>(image.depth()))) + ", " + std::to_string(image.channels()) +
          (image.channels() == 1 ? " channel" : " channels");
+}
+
+/// The image in the content of a file.
+ImageRead color_in(Bytes content, const std::string& name) {
+  if (!to_view(content).starts_with("P6")) return decode_color(content, name);
+  vision::DecodedImage decoded = decode_color_values(content);
+  if (!decoded.problem.empty()) return refuse(SkipReason::kColorUnreadable, name, decoded.problem);
+  return {std::move(decoded.pixels), {}};
+}
+
+ImageRead depth_in(Bytes content, const std::string& name) {
+  const bool known = vision::format_of(content) != vision::ImageFormat::kUnknown;
+  if (content.empty() || known) return decode_depth(content, name);
+  vision::DecodedImage decoded = decode_depth_values(content);
+  if (!decoded.problem.empty()) return refuse(SkipReason::kDepthUnreadable, name, decoded.problem);
+  if (decoded.pixels.type() == CV_16UC1) drop_saturated(decoded.pixels);
+  return {std::move(decoded.pixels), {}};
+}
+
+ImageRead read(const std::filesystem::path& file, const std::filesystem::path& below, SkipReason unreadable,
+               ImageRead (*image_in)(Bytes, const std::string&)) {
+  try {
+    const std::string content = io::read_file(file, io::kImage, below);
+    return image_in({reinterpret_cast<const std::uint8_t*>(content.data()), content.size()}, file.string());
+  } catch (const io::IoError& error) {
+    return {{}, SkippedInput{unreadable, why_unread(error)}};
+  }
 }
 
 }  // namespace
@@ -103,24 +119,12 @@ cv::Mat quantize_depth(const cv::Mat& values, double step) {
   return depth;
 }
 
-ImageRead read_color(const std::filesystem::path& file) {
-  const auto bytes = read_bytes(file);
-  if (!bytes) return refuse(SkipReason::kColorUnreadable, file.string(), "cannot be read");
-  if (!to_view(*bytes).starts_with("P6")) return decode_color(*bytes, file.string());
-  vision::DecodedImage decoded = decode_color_values(*bytes);
-  if (!decoded.problem.empty()) return refuse(SkipReason::kColorUnreadable, file.string(), decoded.problem);
-  return {std::move(decoded.pixels), {}};
+ImageRead read_color(const std::filesystem::path& file, const std::filesystem::path& below) {
+  return read(file, below, SkipReason::kColorUnreadable, color_in);
 }
 
-ImageRead read_depth(const std::filesystem::path& file) {
-  const auto bytes = read_bytes(file);
-  if (!bytes) return refuse(SkipReason::kDepthUnreadable, file.string(), "cannot be read");
-  const bool known = vision::format_of(*bytes) != vision::ImageFormat::kUnknown;
-  if (bytes->empty() || known) return decode_depth(*bytes, file.string());
-  vision::DecodedImage decoded = decode_depth_values(*bytes);
-  if (!decoded.problem.empty()) return refuse(SkipReason::kDepthUnreadable, file.string(), decoded.problem);
-  if (decoded.pixels.type() == CV_16UC1) drop_saturated(decoded.pixels);
-  return {std::move(decoded.pixels), {}};
+ImageRead read_depth(const std::filesystem::path& file, const std::filesystem::path& below) {
+  return read(file, below, SkipReason::kDepthUnreadable, depth_in);
 }
 
 }  // namespace rtd::camera

@@ -19,12 +19,13 @@ struct ImageRead {
   std::string remark = {};  ///< what is wrong with a message that can be used all the same; empty when nothing is
 };
 
-/// PNG, JPEG or PPM as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey).
-ImageRead read_color(const std::filesystem::path& file);
+/// PNG, JPEG or PPM as CV_8UC3 BGR. A file that ends early is refused (decoders would fill the rest with grey), and so
+/// is one that leads out of the folder `below` (io::open_regular; empty: it may).
+ImageRead read_color(const std::filesystem::path& file, const std::filesystem::path& below = {});
 
 /// Depth in one of kDepthFormats (folder/depth_formats.hpp) as CV_16UC1, or as CV_32FC1 in the file's own unit. 65535
 /// (saturated) of 16 bits becomes 0, "no measurement". Other pixel types are refused by name.
-ImageRead read_depth(const std::filesystem::path& file);
+ImageRead read_depth(const std::filesystem::path& file, const std::filesystem::path& below = {});
 
 /// PNG or JPEG, and 16-bit PNG, from memory; `name` is for messages.
 ImageRead decode_color(std::span<const std::uint8_t> encoded, const std::string& name);

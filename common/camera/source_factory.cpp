@@ -109,13 +109,13 @@ namespace {
 std::unique_ptr<FrameSource> make_folder_source(const SourceUri& uri) {
   FolderSource::Options options;
   for (const auto& [key, value] : uri.parameters) {
-    if (key == "masks") {
-      options.masks = parse_flag(uri.text, key, value);
+    if (key == "masks" || key == "outside") {
+      (key == "masks" ? options.masks : options.outside) = parse_flag(uri.text, key, value);
     } else if (key == "tolerance_ms") {
       options.tolerance_ns = parse_tolerance_ns(uri.text, value);
     } else if (!take_calibration_parameter(options.calibration, uri.text, key, value)) {
       throw SourceError("source '" + io::abridged(uri.text) + "': unknown parameter '" + io::abridged(key) + "'; " +
-                        uri.scheme + ": knows masks, tolerance_ms, fps, " + kCalibrationParameters);
+                        uri.scheme + ": knows masks, outside, tolerance_ms, fps, " + kCalibrationParameters);
     }
   }
   if (uri.path.empty())

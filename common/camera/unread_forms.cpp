@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <vector>
+
+#include "common/io/folder_walk.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -81,11 +82,7 @@ std::string advice_for_file(const fs::path& file) {
 }
 
 std::string advice_for_folder(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) files.push_back(entry.path());
-  std::ranges::sort(files);
-  for (const fs::path& file : files)
+  for (const fs::path& file : io::FolderWalk().paths(folder))
     if (std::string advice = advice_for_file(file); !advice.empty()) return advice;
   return {};
 }

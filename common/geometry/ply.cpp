@@ -6,6 +6,8 @@
 #include <istream>
 #include <ostream>
 
+#include "common/io/text.hpp"
+
 namespace rtd::geometry {
 
 void write_ply_header(std::ostream& out, PlyFormat format, const std::string& comment, std::size_t vertices,
@@ -19,8 +21,8 @@ void write_ply_header(std::ostream& out, PlyFormat format, const std::string& co
 std::optional<std::size_t> ply_vertices(std::istream& in) {
   const std::string announced = "element vertex ";
   std::string line;
-  if (!std::getline(in, line) || line != "ply") return std::nullopt;
-  while (std::getline(in, line) && line != "end_header") {
+  if (!io::get_line(in, line) || line != "ply") return std::nullopt;
+  while (io::get_line(in, line) && line != "end_header") {
     if (line.rfind(announced, 0) != 0) continue;
     std::size_t count = 0;
     const char* const end = line.data() + line.size();

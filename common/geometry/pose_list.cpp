@@ -207,14 +207,7 @@ PoseList read_pose_list(const std::string& text, const std::string& name) {
 }
 
 PoseList read_pose_list(const std::filesystem::path& path) {
-  const std::string name = path.string();
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw TrajectoryError(name + ": no such file; check the path");
-  if (std::filesystem::is_directory(path, ignored))
-    throw TrajectoryError(name + ": is a folder; name the trajectory file in it");
-  const std::optional<std::string> text = io::read_text(path);
-  if (!text) throw TrajectoryError(name + ": cannot be opened; check its permissions");
-  return read_pose_list(*text, name);
+  return read_pose_list(read_poses_text(path), path.string());
 }
 
 }  // namespace rtd::geometry

@@ -14,6 +14,8 @@
 #include <tuple>
 
 #include "common/geometry/pose_list.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/stamps.hpp"
@@ -55,20 +57,26 @@ StampedPose parse_row(const std::vector<std::string>& columns, TumRows rows) {
   return {io::parse_stamp_ns(columns[0]), parse_pose(columns, rows == TumRows::kAsWritten ? 0.05 : 0.01)};
 }
 
-std::vector<io::TextLine> lines_of(std::istream& input) {
-  std::ostringstream text;
-  if (input.peek() != std::istream::traits_type::eof()) text << input.rdbuf();
-  return io::split_lines(text.view(), " \t\r,;");
+std::vector<io::TextLine> lines_of(std::string_view text) {
+  return io::split_lines(text, " \t\r,;");
 }
 
-std::ifstream open_or_throw(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) throw TrajectoryError(path.string() + ": no such file; check the path");
-  if (std::filesystem::is_directory(path)) {
-    throw TrajectoryError(path.string() + ": is a folder; name the trajectory file in it");
+Trajectory trajectory_in(std::string_view text, const std::string& name, TumRows rows) {
+  Trajectory trajectory;
+  for (const io::TextLine& line : lines_of(text)) {
+    try {
+      const StampedPose pose = parse_row(line.fields, rows);
+      if (rows == TumRows::kIncreasing) {
+        append_in_order(trajectory, pose);
+      } else {
+        trajectory.push_back(pose);
+      }
+    } catch (const std::invalid_argument& error) {
+      fail(name, line.number, error.what());
+    }
   }
-  std::ifstream input(path);
-  if (!input) throw TrajectoryError(path.string() + ": cannot be opened; check its permissions");
-  return input;
+  if (trajectory.empty() && rows == TumRows::kIncreasing) throw TrajectoryError(name + ": holds no poses");
+  return trajectory;
 }
 
 /// Stamps of both sides in one line by their time. The pair that is closest of all stands side by side in it; when it
@@ -198,33 +206,27 @@ std::vector<StampPair> associate(const std::vector<std::int64_t>& first_ns, cons
   return Association(first_ns, second_ns, max_difference_ns).run();
 }
 
-Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {
-  Trajectory trajectory;
-  for (const io::TextLine& line : lines_of(input)) {
-    try {
-      const StampedPose pose = parse_row(line.fields, rows);
-      if (rows == TumRows::kIncreasing) {
-        append_in_order(trajectory, pose);
-      } else {
-        trajectory.push_back(pose);
-      }
-    } catch (const std::invalid_argument& error) {
-      fail(name, line.number, error.what());
-    }
+std::string read_poses_text(const std::filesystem::path& path) {
+  try {
+    return io::read_file(path, io::kPoses);
+  } catch (const io::IoError& error) {
+    throw TrajectoryError(error.what());
   }
-  if (trajectory.empty() && rows == TumRows::kIncreasing) throw TrajectoryError(name + ": holds no poses");
-  return trajectory;
+}
+
+Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {
+  std::ostringstream text;
+  if (input.peek() != std::istream::traits_type::eof()) text << input.rdbuf();
+  return trajectory_in(text.view(), name, rows);
 }
 
 Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows) {
-  std::ifstream input = open_or_throw(path);
-  return read_tum_trajectory(input, path.string(), rows);
+  return trajectory_in(read_poses_text(path), path.string(), rows);
 }
 
 std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path) {
-  std::ifstream input = open_or_throw(path);
   std::vector<std::int64_t> stamps_ns;
-  for (const io::TextLine& line : lines_of(input)) {
+  for (const io::TextLine& line : lines_of(read_poses_text(path))) {
     try {
       stamps_ns.push_back(io::parse_stamp_ns(stamp_in_name(line.fields[0])));
     } catch (const std::invalid_argument& error) {

@@ -76,6 +76,9 @@ Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows =
 /// As above from a stream; `name` stands for the file in messages.
 Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows = TumRows::kIncreasing);
 
+/// The text of a file with poses; /dev/stdin and the shell's <(...) may be pipes. Throws TrajectoryError.
+std::string read_poses_text(const std::filesystem::path& path);
+
 /// Reads the stamps (first column) of a frame list such as rgb.txt or associations.txt; of a list of names only
 /// ("rgb/12.5.png") they are in the names. Throws TrajectoryError.
 std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path);

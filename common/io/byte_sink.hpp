@@ -15,16 +15,21 @@
 
 namespace rtd::io {
 
-/// A sink or source failed: what() names the path and the system's reason, code() is the errno. Of a folder in place of
-/// a file the system's words say less than the given text: they are left out.
+/// A sink or source failed: what() names the path and the system's reason, code() is the errno. The system's words are
+/// left out where they say less than the given text, of a folder in place of a file for example.
 class IoError : public std::system_error {
  public:
   IoError(int error_number, const std::string& what)
       : std::system_error(error_number, std::generic_category(), what),
-        text_(error_number == EISDIR || error_number == EWOULDBLOCK ? what : std::system_error::what()) {}
+        text_(speaks_for_itself(error_number) ? what : std::system_error::what()) {}
   const char* what() const noexcept override { return text_.what(); }
 
  private:
+  static bool speaks_for_itself(int error_number) {
+    return error_number == EISDIR || error_number == EWOULDBLOCK || error_number == ESPIPE ||
+           error_number == EOVERFLOW || error_number == EXDEV;
+  }
+
   std::runtime_error text_;  ///< unlike a string, copied without throwing
 };
 

@@ -31,12 +31,25 @@ class MemorySource final : public ByteSource {
 /// Whether a symbolic link in place of a file is followed. Not where the name came over the network.
 enum class Links { kFollow, kRefuse };
 
+/// Opens a regular file for reading, without waiting for a pipe, and returns its descriptor. `below`: a folder that the
+/// path may not leave, neither by ".." or as an absolute path nor by links; empty: it may. Throws IoError
+/// (byte_sink.hpp) with path, cause and fix; what leads out gives EXDEV and one text, whether or not a file is there.
+int open_regular(const std::filesystem::path& path, Links links = Links::kFollow,
+                 const std::filesystem::path& below = {});
+
+/// The same for anything that a path may name; `flags` of open(2) are added. Returns -1 and sets errno where it fails.
+int open_below(const std::filesystem::path& path, const std::filesystem::path& below, int flags);
+
+/// Bytes of an open file. Throws IoError.
+std::uint64_t size_of(int fd);
+
 /// A file, read with pread(2): a file that is cut while it is read gives short reads, where a mapping would give
 /// SIGBUS. Its size is that at the time of opening.
 class FileSource final : public ByteSource {
  public:
-  /// Throws IoError (byte_sink.hpp) with path and reason.
-  explicit FileSource(const std::filesystem::path& path, Links links = Links::kFollow);
+  /// Opens it as open_regular() does. Throws IoError.
+  explicit FileSource(const std::filesystem::path& path, Links links = Links::kFollow,
+                      const std::filesystem::path& below = {});
   ~FileSource() override;
   FileSource(const FileSource&) = delete;
   FileSource& operator=(const FileSource&) = delete;

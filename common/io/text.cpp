@@ -6,9 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 
 #include "common/io/printable.hpp"
 
@@ -77,12 +75,15 @@ std::vector<TextLine> split_lines(std::string_view text, std::string_view separa
   return lines;
 }
 
-std::optional<std::string> read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
+bool get_line(std::istream& in, std::string& line) {
+  constexpr std::size_t kLongest = 1U << 16;
+  line.clear();
+  for (char c = 0; in.get(c);) {
+    if (c == '\n') return true;
+    if (line.size() == kLongest) return false;
+    line += c;
+  }
+  return !line.empty();
 }
 
 std::optional<double> parse_number(std::string_view text) {

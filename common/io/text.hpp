@@ -3,7 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <istream>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -21,8 +21,8 @@ struct TextLine {
 /// Splits a text into lines and fields; '#' starts a comment, a byte order mark at the beginning is passed over.
 std::vector<TextLine> split_lines(std::string_view text, std::string_view separators = " \t\r\v\f");
 
-/// The whole content of a file; empty when it cannot be read.
-std::optional<std::string> read_text(const std::filesystem::path& file);
+/// std::getline() for files of others: false also for a line of more than 64 KiB.
+bool get_line(std::istream& in, std::string& line);
 
 /// The whole text as a number; empty when it is not one. "nan" and "inf" are numbers here: check them.
 std::optional<double> parse_number(std::string_view text);

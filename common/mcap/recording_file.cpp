@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/io/byte_sink.hpp"
+#include "common/io/folder_walk.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/mcap/framing.hpp"
 
@@ -59,10 +60,8 @@ std::string explain(const io::ByteSource& source) {
 fs::path recording_path(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return path;
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, error))
-    if (entry.path().extension() == io::kMcapExtension) files.push_back(entry.path());
-  std::ranges::sort(files);
+  std::vector<fs::path> files = io::FolderWalk().paths(path);
+  std::erase_if(files, [](const fs::path& file) { return file.extension() != io::kMcapExtension; });
   if (files.size() == 1) return files.front();
   if (files.empty())
     throw io::IoError(EISDIR,

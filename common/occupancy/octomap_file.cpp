@@ -75,11 +75,11 @@ struct Header {
 
 Header read_header(std::istream& in) {
   std::string line;
-  if (!std::getline(in, line) || !line.starts_with(kOctomapFirstLine))
+  if (!io::get_line(in, line) || !line.starts_with(kOctomapFirstLine))
     throw OctomapError("it is not a binary OctoMap (.bt)");
   Header header;
   constexpr int kMaxLines = 100;
-  for (int i = 0; i < kMaxLines && std::getline(in, line) && line != "data"; ++i) {
+  for (int i = 0; i < kMaxLines && io::get_line(in, line) && line != "data"; ++i) {
     const std::string value = line.substr(std::min(line.size(), line.find(' ') + 1));
     if (line.starts_with("id ")) header.id = value;
     if (line.starts_with("res ")) header.cell_m = io::parse_number(value).value_or(0);

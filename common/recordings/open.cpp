@@ -100,8 +100,9 @@ class Passes {
  public:
   Passes(const Parts& parts, const Progress& progress) : progress_(progress) {
     for (const fs::path& file : parts.files) {
-      forms_.push_back(form_of(io::FileSource(file)));
-      sizes_.push_back(fs::file_size(file));
+      const io::FileSource source(file);
+      forms_.push_back(form_of(source));
+      sizes_.push_back(source.size());
     }
     packed_ = std::ranges::count(forms_, Form::kPacked) > 0;
   }

@@ -7,9 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
 #include <set>
 #include <string_view>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/byte_source.hpp"
+#include "common/io/folder_walk.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/mcap/recording_file.hpp"
 
@@ -52,25 +57,39 @@ std::string name_without_number(const fs::path& file) {
   return name;
 }
 
+/// Throws io::IoError: too many files.
 std::vector<fs::path> recordings_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    if (has_recording_name(entry.path())) files.push_back(entry.path());
-  }
+  std::vector<fs::path> files = io::FolderWalk().paths(folder);
+  std::erase_if(files, [](const fs::path& file) { return !has_recording_name(file); });
   std::ranges::sort(files, {}, order_of);
   return files;
 }
 
-/// rosbag2 before Humble wrote names relative to the folder above, too.
+/// Whether the file of a recording is there. Throws RecordingFileError for what is not a regular file, and for links
+/// that lead out of the folder.
+bool is_there(const fs::path& folder, const fs::path& file) {
+  try {
+    io::FileSource(file, io::Links::kFollow, folder);
+    return true;
+  } catch (const io::IoError& error) {
+    if (error.code().value() == ENOENT || error.code().value() == ENOTDIR) return false;
+    throw RecordingFileError(std::string(error.what()) +
+                             (error.code().value() == EXDEV ? "; name the file itself to use it all the same" : ""));
+  }
+}
+
+/// rosbag2 before Humble wrote names relative to the folder above, too; of such, and of all that lead out of the
+/// folder, the last part counts.
 fs::path place_of(const fs::path& folder, const std::string& name) {
-  const fs::path beside = folder / name;
-  return fs::exists(beside) ? beside : folder / fs::path(name).filename();
+  const fs::path beside = fs::path(name).lexically_normal();
+  const bool inside = beside.is_relative() && *beside.begin() != "..";
+  return inside && is_there(folder, folder / beside) ? folder / beside : folder / beside.filename();
 }
 
 Parts parts_by_metadata(const fs::path& folder) {
   try {
-    const YAML::Node bag = YAML::LoadFile((folder / kMetadata).string())["rosbag2_bagfile_information"];
+    const std::string text = io::read_file(folder / kMetadata, io::kSettings, folder);
+    const YAML::Node bag = YAML::Load(text)["rosbag2_bagfile_information"];
     if (!bag) throw RecordingFileError((folder / kMetadata).string() + " describes no recording of rosbag2");
     Parts parts;
     const auto format = bag["compression_format"].as<std::string>("");
@@ -86,13 +105,15 @@ Parts parts_by_metadata(const fs::path& folder) {
     for (const YAML::Node& name : names) {
       const fs::path file = place_of(folder, name.as<std::string>());
       if (!taken.insert(fs::weakly_canonical(file)).second) continue;
-      fs::exists(file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
+      is_there(folder, file) ? parts.files.push_back(file) : parts.missing.push_back(name.as<std::string>());
     }
     if (parts.files.empty()) {
       throw RecordingFileError(folder.string() + ": none of the files that " + kMetadata + " names is in it" +
                                (parts.missing.empty() ? "" : ", e.g. " + parts.missing.front()));
     }
     return parts;
+  } catch (const io::IoError& error) {
+    throw RecordingFileError(error.what());
   } catch (const YAML::Exception& error) {
     throw RecordingFileError((folder / kMetadata).string() + " cannot be read: " + error.what() +
                              "; name the files themselves, or remove it to take them by their names");
@@ -105,12 +126,18 @@ Parts parts_of(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return {{path}, {}, false};
   if (fs::exists(path / kMetadata)) return parts_by_metadata(path);
-  Parts parts{recordings_in(path), {}, false};
+  Parts parts;
+  try {
+    parts.files = recordings_in(path);
+  } catch (const io::IoError& failure) {
+    throw RecordingFileError(failure.what());
+  }
   if (parts.files.empty()) {
     throw RecordingFileError(path.string() +
                              ": this folder holds no recording (metadata.yaml, .mcap, .db3): name a "
                              "recording or a folder with one");
   }
+  std::erase_if(parts.files, [&](const fs::path& file) { return !is_there(path, file); });
   const auto differs = [&](const fs::path& file) {
     return name_without_number(file) != name_without_number(parts.files.front());
   };
@@ -123,7 +150,11 @@ Parts parts_of(const fs::path& path) {
 }
 
 bool holds_recording(const fs::path& folder) {
-  return fs::exists(folder / kMetadata) || !recordings_in(folder).empty();
+  try {
+    return fs::exists(folder / kMetadata) || !recordings_in(folder).empty();
+  } catch (const io::IoError&) {
+    return false;
+  }
 }
 
 }  // namespace rtd::recordings

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "common/io/byte_sink.hpp"
 #include "common/io/recording_forms.hpp"
 
 namespace rtd::rosbag1 {
@@ -114,12 +115,12 @@ Content decompress_lz4(const Content& data, std::size_t size) {
 }  // namespace
 
 BagFile::BagFile(std::filesystem::path path) : path_(std::move(path)) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path_, error)) throw BagError(path_.string() + " is a folder, not a bag file");
-  stream_.open(path_, std::ios::binary | std::ios::ate);
-  if (!stream_) throw BagError(path_.string() + " cannot be read: does it exist, may you read it?");
-  size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(stream_.tellg(), 0));
-  const std::vector<std::uint8_t> start = read(0, std::min<std::uint64_t>(size_, kVersionLine.size()));
+  try {
+    file_ = std::make_unique<io::FileSource>(path_);
+  } catch (const io::IoError& error) {
+    throw BagError(error.what());
+  }
+  const std::vector<std::uint8_t> start = read(0, std::min<std::uint64_t>(size(), kVersionLine.size()));
   const std::string line(start.begin(), start.end());
   if (line == kVersionLine) {
     first_record_ = kVersionLine.size();
@@ -144,21 +145,20 @@ RecordPlace BagFile::record_at(std::uint64_t position) {
   place.header = read(position + kLengthBytes, header_bytes);
   place.data_bytes = length_at(position + kLengthBytes + header_bytes);
   place.data_begin = position + 2 * kLengthBytes + header_bytes;
-  if (place.end() > size_) {
+  if (place.end() > size()) {
     throw error_at(position, "a record claims " + std::to_string(place.data_bytes) + " bytes, the file has " +
-                                 std::to_string(size_ - place.data_begin) + " more");
+                                 std::to_string(size() - place.data_begin) + " more");
   }
   return place;
 }
 
 std::vector<std::uint8_t> BagFile::read(std::uint64_t position, std::uint64_t bytes) {
   if (bytes > kMaxChunkBytes) throw error_at(position, std::to_string(bytes) + " bytes in one piece are too many");
-  if (position > size_ || bytes > size_ - position) throw error_at(position, "the file ends in the middle of a record");
+  if (position > size() || bytes > size() - position)
+    throw error_at(position, "the file ends in the middle of a record");
   std::vector<std::uint8_t> content(bytes);
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(position));
-  stream_.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(bytes));
-  if (!stream_) throw error_at(position, "reading fails");
+  if (file_->read(position, std::as_writable_bytes(std::span(content))) != bytes)
+    throw error_at(position, "reading fails");
   return content;
 }
 

@@ -4,13 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "common/io/byte_source.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 
 namespace rtd::rosbag1 {
@@ -85,7 +86,7 @@ class BagFile {
   explicit BagFile(std::filesystem::path path);
 
   const std::filesystem::path& path() const { return path_; }
-  std::uint64_t size() const { return size_; }
+  std::uint64_t size() const { return file_->size(); }
   std::uint64_t first_record() const { return first_record_; }
 
   /// The record at `position`, its data not yet read. Throws BagError when it does not fit into the file.
@@ -96,8 +97,8 @@ class BagFile {
  private:
   BagError error_at(std::uint64_t position, const std::string& cause) const;
   std::filesystem::path path_;
-  std::ifstream stream_;
-  std::uint64_t size_ = 0, first_record_ = 0;
+  std::unique_ptr<io::FileSource> file_;
+  std::uint64_t first_record_ = 0;
 };
 
 }  // namespace rtd::rosbag1

@@ -10,6 +10,9 @@
 #include <tuple>
 #include <utility>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/byte_source.hpp"
+
 namespace rtd::rosbag2 {
 namespace {
 
@@ -106,8 +109,11 @@ void Db3Reader::fail(const std::string& what) const {
 }
 
 void Db3Reader::open() {
-  if (!fs::is_regular_file(path_)) fail("no such file");
-  bytes_ = size_of(path_) + size_of(beside(path_, "-wal"));
+  try {
+    bytes_ = io::FileSource(path_).size() + size_of(beside(path_, "-wal"));
+  } catch (const io::IoError& error) {
+    throw Db3Error(error.what());
+  }
   if (bytes_ == 0) fail("the file is empty");
   sqlite3* database = nullptr;
   const int opened = sqlite3_open_v2(uri_of(path_).c_str(), &database, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);

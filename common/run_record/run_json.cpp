@@ -3,12 +3,13 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
 #include "common/io/atomic_file.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/json_text.hpp"
 
@@ -227,10 +228,10 @@ void write_run_json(const RunRecord& record, const std::filesystem::path& file) 
 }
 
 RunRecord read_run_json(const std::filesystem::path& file) {
-  std::ifstream input(file, std::ios::binary);
-  if (!input) throw RunFileError(file.string() + ": cannot be opened; name a folder that 'rtd run --out' wrote");
   try {
-    return read_record(Json::parse(input));
+    return read_record(Json::parse(io::read_file(file, io::kResults)));
+  } catch (const io::IoError& error) {
+    throw RunFileError(std::string(error.what()) + "; name a folder that 'rtd run --out' wrote");
   } catch (const nlohmann::json::exception& error) {
     throw RunFileError(file.string() + ": is not the record of a run: " + error.what());
   } catch (const std::invalid_argument& error) {

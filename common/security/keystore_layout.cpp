@@ -6,9 +6,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <sstream>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/security/certificate.hpp"
 
 namespace rtd::security {
@@ -36,13 +37,13 @@ std::vector<std::string> enclaves_in(const KeystoreLayout& layout) {
 }
 
 std::string read_text(const fs::path& file) {
-  errno = 0;
-  std::ifstream stream(file);
-  std::stringstream text;
-  text << stream.rdbuf();
-  if (!stream || text.str().empty())
-    throw SecurityError(file.string() + " cannot be read: " + (errno != 0 ? std::strerror(errno) : "it is empty"));
-  return text.str();
+  try {
+    std::string text = io::read_file(file, io::kKeys);
+    if (text.empty()) throw SecurityError(file.string() + " cannot be read: it is empty");
+    return text;
+  } catch (const io::IoError& error) {
+    throw SecurityError(error.what());
+  }
 }
 
 std::string default_keystore() {

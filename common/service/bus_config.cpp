@@ -10,10 +10,11 @@
 #include <array>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <ranges>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/services.hpp"
 #include "common/security/keystore_layout.hpp"
@@ -44,11 +45,14 @@ void load_profile(ConfigBinder& binder, const std::string& profile) {
   if (profile.empty()) return;
   if (const auto known = built_in_profiles().find(profile); known != built_in_profiles().end())
     return binder.load_text(known->second, "config/profiles/" + profile + ".yaml", config_sections());
-  std::ifstream file(profile);
-  if (is_file_name(profile) && file && !std::filesystem::is_directory(profile))
-    return binder.load_text({std::istreambuf_iterator<char>(file), {}}, profile, config_sections());
-  throw ConfigError(fmt::format("--profile {}: {}, there are {} (or a YAML file)", io::abridged(profile),
-                                is_file_name(profile) ? "no such file" : "no such profile", profile_names()));
+  std::string cause = io::abridged(profile) + ": no such profile";
+  try {
+    if (is_file_name(profile))
+      return binder.load_text(io::read_file(profile, io::kSettings), profile, config_sections());
+  } catch (const io::IoError& error) {
+    cause = error.what();
+  }
+  throw ConfigError(fmt::format("--profile {}, there are {} (or a YAML file)", cause, profile_names()));
 }
 
 /// ROS 2 compares ROS_SECURITY_ENABLE exactly so.

@@ -11,11 +11,12 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <limits>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 
@@ -290,14 +291,11 @@ void ConfigBinder::set(const std::string& assignment, const std::vector<std::str
 }
 
 void ConfigBinder::load_file(const std::string& path, const std::vector<std::string>& other_sections) {
-  std::error_code unreadable;
-  if (std::filesystem::is_directory(path, unreadable))
-    throw ConfigError(fmt::format("config file '{}' is a folder: name a file in it with --config", io::abridged(path)));
-  std::ifstream file(path);
-  if (!file)
-    throw ConfigError(
-        fmt::format("config file '{}' cannot be read: check the path given to --config", io::abridged(path)));
-  load_text({std::istreambuf_iterator<char>(file), {}}, path, other_sections);
+  try {
+    load_text(io::read_file(path, io::kSettings), path, other_sections);
+  } catch (const io::IoError& error) {
+    throw ConfigError(fmt::format("--config {}", error.what()));
+  }
 }
 
 void ConfigBinder::load_text(const std::string& yaml, const std::string& origin,

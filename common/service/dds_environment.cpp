@@ -7,11 +7,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <regex>
 #include <sstream>
+
+#include "common/io/input_file.hpp"
 
 namespace rtd::service {
 namespace {
@@ -92,11 +93,8 @@ DdsSetting follow_peers(const std::string& value, bus::BusOptions& options) {
 std::string profile_text(const std::string& value) {
   if (value.find('<') != std::string::npos) return value;  // Cyclone DDS takes the text itself too
   const std::string scheme = "file://";
-  std::ifstream file(value.starts_with(scheme) ? value.substr(scheme.size()) : value);
-  std::string text(kMaxProfileBytes, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, file.gcount())));
-  return text;
+  const std::string file = value.starts_with(scheme) ? value.substr(scheme.size()) : value;
+  return io::try_read_file(file, io::kSettings).value_or("").substr(0, kMaxProfileBytes);
 }
 
 /// The first group of each match, without doubles.

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <string_view>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/vision/jpeg_codec.hpp"
 #include "common/vision/png_codec.hpp"
 
@@ -14,8 +15,8 @@ namespace rtd::vision {
 namespace {
 
 bool starts_with(std::span<const std::uint8_t> bytes, std::string_view magic) {
-  return bytes.size() >= magic.size() &&
-         std::ranges::equal(bytes.first(magic.size()), magic, {}, {}, [](char c) { return static_cast<std::uint8_t>(c); });
+  return bytes.size() >= magic.size() && std::ranges::equal(bytes.first(magic.size()), magic, {}, {},
+                                                            [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
 }  // namespace
@@ -35,14 +36,14 @@ DecodedImage decode_image(std::span<const std::uint8_t> bytes, const DecodeRules
   return {{}, std::string("cannot be decoded as an image; readable: ") + kReadableFormats};
 }
 
-DecodedImage read_image(const std::filesystem::path& file, const DecodeRules& rules) {
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
-  if (!stream) return {{}, "cannot be read"};
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(std::max<std::streamoff>(stream.tellg(), 0)));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  if (!stream && !bytes.empty()) return {{}, "cannot be read"};
-  return decode_image(bytes, rules);
+DecodedImage read_image(const std::filesystem::path& file, const DecodeRules& rules,
+                        const std::filesystem::path& below) {
+  try {
+    const std::string content = io::read_file(file, io::kImage, below);
+    return decode_image({reinterpret_cast<const std::uint8_t*>(content.data()), content.size()}, rules);
+  } catch (const io::IoError& error) {
+    return {{}, error.what()};
+  }
 }
 
 std::vector<std::uint8_t> encode_image(std::string extension, const cv::Mat& image) {

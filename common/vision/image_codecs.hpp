@@ -27,9 +27,9 @@ enum class PixelsAs {
 /// What may be decoded. An image that claims more is refused by its header, before memory is taken for it.
 struct DecodeRules {
   PixelsAs pixels = PixelsAs::kBgr;
-  bool upright = false;                       ///< turn a photo as its EXIF data say
-  bool jpeg_only = false;                     ///< as on the compressed topic
-  std::int64_t max_pixels = kMaxFilePixels;   ///< width x height
+  bool upright = false;                                                   ///< turn a photo as its EXIF data say
+  bool jpeg_only = false;                                                 ///< as on the compressed topic
+  std::int64_t max_pixels = kMaxFilePixels;                               ///< width x height
   static constexpr std::int64_t kMaxFilePixels = std::int64_t{64} << 20;  ///< photos; no side is above 32768 px
   static constexpr std::int64_t kMaxStreamPixels = 3840 * 2160;           ///< images of a camera, and from the bus
 };
@@ -49,8 +49,10 @@ struct DecodedImage {
 /// Thread-safe.
 DecodedImage decode_image(std::span<const std::uint8_t> bytes, const DecodeRules& rules = {});
 
-/// Reads and decodes a file. `problem` also says when it cannot be read.
-DecodedImage read_image(const std::filesystem::path& file, const DecodeRules& rules = {});
+/// Reads and decodes a file, which must not lead out of the folder `below` (io::open_regular; empty: it may). `problem`
+/// also says when it cannot be read.
+DecodedImage read_image(const std::filesystem::path& file, const DecodeRules& rules = {},
+                        const std::filesystem::path& below = {});
 
 /// A CV_8UC3 (BGR) or CV_8UC1 image as a baseline JPEG with 4:2:0 chroma. quality: 1 to 100. Empty if the image has
 /// another type or no pixels. Thread-safe.

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::filter {
@@ -22,14 +23,14 @@ double cores_of(const std::string& quota, const std::string& period) {
 }
 
 std::string first_word(const fs::path& file) {
-  std::istringstream text(io::read_text(file).value_or(""));
+  std::istringstream text(io::try_read_file(file, io::kKernelText).value_or(""));
   std::string word;
   text >> word;
   return word;
 }
 
 double quota_of(const fs::path& group) {
-  std::istringstream text(io::read_text(group / "cpu.max").value_or(""));
+  std::istringstream text(io::try_read_file(group / "cpu.max", io::kKernelText).value_or(""));
   std::string quota, period;
   text >> quota >> period;  // "max 100000": parse_number() finds no number
   return std::min(cores_of(quota, period),
@@ -48,7 +49,7 @@ double smallest_quota(const fs::path& mount, const fs::path& group) {
 
 double usable_cores(const fs::path& root) {
   double cores = std::max(1U, std::thread::hardware_concurrency());
-  std::istringstream groups(io::read_text(root / "proc/self/cgroup").value_or(""));
+  std::istringstream groups(io::try_read_file(root / "proc/self/cgroup", io::kKernelText).value_or(""));
   const fs::path mounts = root / "sys/fs/cgroup";
   for (std::string line; std::getline(groups, line);) {  // "4:cpu,cpuacct:/path" or, version 2, "0::/path"
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);

@@ -7,11 +7,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
+#include "common/io/input_file.hpp"
 #include "common/map_page/map_page.hpp"
 #include "common/occupancy/octomap_file.hpp"
 #include "common/service/command_line.hpp"
@@ -82,9 +82,10 @@ bool write_file(const std::string& path, std::ostream& err, const std::function<
 }
 
 bool is_octomap(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  return std::getline(file, line) && line.starts_with("# Octomap");
+  constexpr std::string_view kBegin = "# Octomap";
+  io::InputStream file(path);
+  std::string begin(kBegin.size(), '\0');
+  return file.read(begin.data(), kBegin.size()) && begin == kBegin;
 }
 
 /// The middles of occupied cells.
@@ -123,7 +124,7 @@ int write_plan(const MapRequest& request, const occupancy::Volume& volume, const
 int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& err) {
   if (request.format == "tum" || request.format == "bt" || request.format == "html")
     throw UsageError(request.file + " is a voxel map: it is exported as pgm, ply or pcd");
-  std::ifstream file(request.file, std::ios::binary);
+  io::InputStream file(request.file);
   const occupancy::Volume volume = occupancy::read_octomap(file);
   const std::vector<slam::MapPoint> occupied = occupied_of(volume);
   if (request.format == "pgm") return write_plan(request, volume, occupied, out, err);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/io/atomic_file.hpp"
+#include "common/io/folder_walk.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/indexed_reader.hpp"
@@ -125,8 +126,8 @@ std::vector<fs::path> files_of(const std::vector<std::string>& inputs) {
       continue;
     }
     const std::size_t before = files.size();
-    for (const fs::directory_entry& entry : fs::directory_iterator(input))
-      if (entry.path().extension() == io::kMcapExtension) files.push_back(entry.path());
+    for (const fs::path& file : io::FolderWalk().paths(input))
+      if (file.extension() == io::kMcapExtension) files.push_back(file);
     if (files.size() == before)
       throw io::IoError(EISDIR, input + ": this folder holds no .mcap file: name the parts, or their folder");
   }

@@ -6,14 +6,15 @@
 #include <fmt/ranges.h>
 
 #include <chrono>
-#include <fstream>
 #include <memory>
 #include <set>
 
 #include "common/bus/topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/geometry/transform_log.hpp"
+#include "common/io/byte_sink.hpp"
 #include "common/io/fd_writing.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
@@ -25,16 +26,13 @@
 namespace rtd::slam {
 namespace {
 
-/// At most one byte more than a vocabulary may have: a video named by mistake is not read to its end.
-std::vector<std::byte> read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file)
-    throw service::ConfigError("slam.place.vocabulary: cannot read '" + path +
-                               "'; leave it empty for the built-in one");
-  std::vector<std::byte> bytes(Vocabulary::kMaxBytes + 1);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
+std::string read_vocabulary(const std::string& path) {
+  try {
+    return io::read_file(path, {"a vocabulary", Vocabulary::kMaxBytes});
+  } catch (const io::IoError& error) {
+    throw service::ConfigError(std::string("slam.place.vocabulary: ") + error.what() +
+                               "; leave it empty for the built-in one");
+  }
 }
 
 void check_topic(const std::string& key, const std::string& topic) {
@@ -107,7 +105,8 @@ SlamConfig core_config(const ServiceConfig& config) {
   }
   if (config.vocabulary_file.empty()) return core;
   try {
-    core.place.vocabulary = std::make_shared<const Vocabulary>(Vocabulary::parse(read_file(config.vocabulary_file)));
+    core.place.vocabulary =
+        std::make_shared<const Vocabulary>(Vocabulary::parse(io::bytes_of(read_vocabulary(config.vocabulary_file))));
   } catch (const VocabularyError& error) {
     throw service::ConfigError("slam.place.vocabulary: '" + io::abridged(config.vocabulary_file) +
                                "': " + error.what());

@@ -13,7 +13,8 @@
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/folder/ground_truth.hpp"
 #include "common/camera/recording/ros_images.hpp"
-#include "common/io/text.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
@@ -95,11 +96,11 @@ double units_by_look(const cv::Mat& depth) {
 }
 
 /// A file whose name alone speaks for it may be anything: what cannot be read is passed over.
-std::optional<Calibration> calibration_by_name(const fs::path& folder, std::optional<cv::Size> image_px) {
+std::optional<Calibration> calibration_by_name(const FolderContents& contents, std::optional<cv::Size> image_px) {
   for (const char* const pattern : kCalibrationFiles) {
-    for (const std::string& file : find_files(folder, pattern)) {
+    for (const std::string& file : find_files(contents, pattern)) {
       try {
-        return read_calibration(folder / file, image_px);
+        return read_calibration(contents.folder / file, image_px, contents.below(file));
       } catch (const SourceError&) {
       }
     }
@@ -108,13 +109,13 @@ std::optional<Calibration> calibration_by_name(const fs::path& folder, std::opti
 }
 
 /// Settings of other programs beside the data, under names that do not speak for them: "orb2.yaml".
-std::vector<std::pair<std::string, std::string>> settings_beside(const fs::path& folder) {
+std::vector<std::pair<std::string, std::string>> settings_beside(const FolderContents& contents) {
   std::vector<std::pair<std::string, std::string>> found;  // file and form
-  for (const std::string& file : find_files(folder, "*.y*ml")) {
+  for (const std::string& file : find_files(contents, "*.y*ml")) {
     try {
-      const std::optional<std::string> text = io::read_text(folder / file);
-      const auto form = text ? read_calibration_form(*text, file) : std::nullopt;
-      if (form) found.emplace_back(file, form->form);
+      const std::string text = io::read_file(contents.folder / file, io::kCalibration, contents.below(file));
+      if (const auto form = read_calibration_form(text, file)) found.emplace_back(file, form->form);
+    } catch (const io::IoError&) {
     } catch (const SourceError&) {  // of a lens that no model fits
     }
   }
@@ -122,14 +123,14 @@ std::vector<std::pair<std::string, std::string>> settings_beside(const fs::path&
 }
 
 /// Loads what a TUM folder may have, else throws; settings of another program are named, not guessed at.
-Calibration required_calibration(const fs::path& folder, const std::string& uri) {
-  const auto settings = settings_beside(folder);
-  if (settings.empty()) return load_calibration(folder);
+Calibration required_calibration(const FolderContents& contents, const std::string& uri) {
+  const auto settings = settings_beside(contents);
+  if (settings.empty()) return load_calibration(contents.folder);
   std::string files;
   for (const auto& [file, form] : settings) files += fmt::format("{}{} ({})", files.empty() ? "" : ", ", file, form);
-  throw SourceError(
-      fmt::format("no calibration for {}, but beside the data: {}. Choose one: --source '{}{}calibration={}'",
-                  folder.string(), files, uri, uri.find('?') == std::string::npos ? '?' : '&', settings.front().first));
+  throw SourceError(fmt::format(
+      "no calibration for {}, but beside the data: {}. Choose one: --source '{}{}calibration={}'",
+      contents.folder.string(), files, uri, uri.find('?') == std::string::npos ? '?' : '&', settings.front().first));
 }
 
 /// A path without the folder that it is said of.
@@ -149,7 +150,7 @@ std::int64_t median_period_ns(const std::vector<FilePair>& pairs) {
 }  // namespace
 
 FolderSource::FolderSource(std::string uri, const fs::path& folder, Options options)
-    : options_(std::move(options)), contents_(recognise_folder(folder)) {
+    : options_(std::move(options)), contents_(recognise_folder(folder, options_.outside)) {
   info_.uri = std::move(uri);
   read_pairs();
   const FirstImages first = look_at_first_images();
@@ -159,7 +160,7 @@ FolderSource::FolderSource(std::string uri, const fs::path& folder, Options opti
 }
 
 void FolderSource::read_pairs() {
-  const ListRules rules{options_.tolerance_ns, options_.calibration.fps.has_value()};
+  const ListRules rules{options_.tolerance_ns, options_.calibration.fps.has_value(), options_.outside};
   if (!contents_.associations.empty()) {
     list_ = read_associations(contents_.folder, contents_.associations, rules);
   } else if (!contents_.color_list.empty()) {
@@ -185,12 +186,12 @@ FolderSource::FirstImages FolderSource::look_at_first_images() const {
   for (std::size_t i = 0; i < std::min(kMost, list_.pairs.size()); ++i) {
     const FilePair& pair = list_.pairs[i];
     if (!first.color_px) {
-      if (const ImageRead color = read_color(contents_.folder / pair.color.file); !color.problem)
+      if (const ImageRead color = read_color(contents_.folder / pair.color.file, contents_.below()); !color.problem)
         first.color_px = color.image.size();
     }
     const bool measured = !first.depth.empty() && cv::countNonZero(first.depth) > 0;
     if (!measured) {
-      if (const ImageRead depth = read_depth(contents_.folder / pair.depth.file); !depth.problem)
+      if (const ImageRead depth = read_depth(contents_.folder / pair.depth.file, contents_.below()); !depth.problem)
         first.depth = depth.image;
     }
     if (measured && first.color_px) break;
@@ -203,9 +204,10 @@ std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages&
   const fs::path& folder = contents_.folder;
   if (options_.calibration.has_camera()) return requested_calibration(options_.calibration, folder, first.color_px);
   for (const std::string files : {"calibration.yaml", contents_.layout->calibration})
-    for (const std::string& file : find_files(folder, files)) return read_calibration(folder / file, first.color_px);
+    for (const std::string& file : find_files(contents_, files))
+      return read_calibration(folder / file, first.color_px, contents_.below(file));
   if (auto known = known_calibration(folder)) return known;
-  if (auto found = calibration_by_name(folder, first.color_px)) return found;
+  if (auto found = calibration_by_name(contents_, first.color_px)) return found;
   const auto& [fx, fy, cx, cy, width, height] = contents_.layout->camera;
   const std::string origin = std::string("all of ") + contents_.layout->name;
   if (fx == 0) return std::nullopt;
@@ -215,7 +217,7 @@ std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages&
 
 void FolderSource::calibrate(const FirstImages& first) {
   const std::optional<Calibration> found = calibration_of_files(first);
-  const Calibration calibration = found ? *found : required_calibration(contents_.folder, info_.uri);
+  const Calibration calibration = found ? *found : required_calibration(contents_, info_.uri);
   apply(calibration, info_);
   y_up_ = calibration.y_up;
   note(fmt::format("camera: {} by {}", camera_text(info_.camera), inside(contents_.folder, calibration.origin)));
@@ -269,8 +271,8 @@ void FolderSource::align_depth(const FirstImages& first) {
   if (first.depth.empty()) return;
   const cv::Size depth_px = first.depth.size(), color_px = size_of(info_.camera);
   std::optional<geometry::CameraModel> lens;
-  for (const std::string& file : find_files(contents_.folder, contents_.layout->depth_calibration)) {
-    lens = read_calibration(contents_.folder / file, depth_px).camera;
+  for (const std::string& file : find_files(contents_, contents_.layout->depth_calibration)) {
+    lens = read_calibration(contents_.folder / file, depth_px, contents_.below(file)).camera;
     note(fmt::format("depth has the lens of {}: it is registered to colour", file));
     break;
   }
@@ -321,14 +323,17 @@ std::optional<std::int64_t> FolderSource::advance() {
 bool FolderSource::is_there() const {
   const FilePair& pair = list_.pairs[next_pair_ - 1];
   const auto has_content = [this](const std::string& file) {
-    std::error_code missing;
-    return std::filesystem::file_size(contents_.folder / file, missing) > 0 && !missing;
+    try {
+      return io::FileSource(contents_.folder / file, io::Links::kFollow, contents_.below()).size() > 0;
+    } catch (const io::IoError&) {
+      return false;
+    }
   };
   return has_content(pair.color.file) && has_content(pair.depth.file);
 }
 
 ImageRead FolderSource::read_depth_units(const std::string& file) const {
-  ImageRead depth = read_depth(contents_.folder / file);
+  ImageRead depth = read_depth(contents_.folder / file, contents_.below());
   if (depth.problem) return depth;
   if (depth.image.type() == CV_32FC1) {
     const double step = float_step_ > 0 ? float_step_ : kFloatDepthUnitM;
@@ -340,7 +345,7 @@ ImageRead FolderSource::read_depth_units(const std::string& file) const {
 
 std::optional<SourceFrame> FolderSource::decode() {
   const FilePair& pair = list_.pairs[next_pair_ - 1];
-  ImageRead color = read_color(contents_.folder / pair.color.file);
+  ImageRead color = read_color(contents_.folder / pair.color.file, contents_.below());
   ImageRead depth = color.problem ? ImageRead{} : read_depth_units(pair.depth.file);
   std::optional<SkippedInput> problem = color.problem ? color.problem : depth.problem;
   if (!problem) {
@@ -360,8 +365,7 @@ std::optional<SourceFrame> FolderSource::decode() {
 cv::Mat FolderSource::read_mask(const FilePair& pair) const {
   const fs::path name = fs::path(pair.color.file).filename().replace_extension(".png");
   const fs::path file = contents_.folder / "mask" / name;
-  if (!fs::exists(file)) return {};
-  const cv::Mat mask = vision::read_image(file, {.pixels = vision::PixelsAs::kGrey}).pixels;
+  const cv::Mat mask = vision::read_image(file, {.pixels = vision::PixelsAs::kGrey}, contents_.below()).pixels;
   if (mask.empty()) return {};
   return mask > 0;
 }

@@ -21,7 +21,8 @@ namespace rtd::camera {
 class FolderSource final : public PlayedSource {
  public:
   struct Options {
-    bool masks = false;  ///< also read mask/<colour file name>.png: pixels of moving objects
+    bool masks = false;    ///< also read mask/<colour file name>.png: pixels of moving objects
+    bool outside = false;  ///< images and other files may lie outside the folder
     std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
     CalibrationRequest calibration;                   ///< with fps: frames are counted, stamps of lists do not matter
   };

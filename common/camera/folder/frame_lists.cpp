@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "common/camera/folder/frame_names.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::camera {
@@ -18,10 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<io::TextLine> read_lines(const fs::path& file) {
-  const std::optional<std::string> text = io::read_text(file);
-  if (!text) throw SourceError("cannot read " + file.string());
-  return io::split_lines(*text);
+std::vector<io::TextLine> read_lines(const fs::path& file, const ListRules& rules) {
+  try {
+    return io::split_lines(io::read_file(file, io::kFrameList, rules.outside ? fs::path() : file.parent_path()));
+  } catch (const io::IoError& error) {
+    throw SourceError(why_unread(error));
+  }
 }
 
 /// "folder/rgb.txt:17": for messages.
@@ -44,6 +48,14 @@ SkippedInput malformed(const fs::path& file, const io::TextLine& line, const std
   return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
 }
 
+/// Throws SourceError for an image that does not lie below the folder of its list, as far as its name says so. Whether
+/// such a file is there makes no difference.
+void require_inside(const StampedFile& entry, const std::string& where) {
+  const fs::path path = fs::path(entry.file).lexically_normal();
+  if (path.is_relative() && *path.begin() != "..") return;
+  throw SourceError(where + ": '" + entry.file + "' does not lie below the folder of the list; " + kOutsideAdvice);
+}
+
 std::string joined_words(std::span<const std::string> words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
@@ -59,13 +71,14 @@ std::vector<std::string> columns_of(const io::TextLine& line) {
   return columns;
 }
 
-std::vector<StampedFile> read_list(const fs::path& file, std::vector<SkippedInput>& skipped) {
+std::vector<StampedFile> read_list(const fs::path& file, const ListRules& rules, std::vector<SkippedInput>& skipped) {
   std::vector<StampedFile> entries;
-  for (const io::TextLine& line : read_lines(file)) {
+  for (const io::TextLine& line : read_lines(file, rules)) {
     const std::vector<std::string> columns = columns_of(line);
     const auto stamp_ns = columns.empty() ? std::nullopt : stamp_of(columns[0], at_line(file, line.number));
     if (stamp_ns && columns.size() > 1) {
       entries.push_back({*stamp_ns, joined_words(std::span(columns).subspan(1))});
+      if (!rules.outside) require_inside(entries.back(), at_line(file, line.number));
     } else {
       skipped.push_back(malformed(file, line, "stamp file"));
     }
@@ -80,9 +93,10 @@ FilePair colour_first(FilePair pair) {
   return pair;
 }
 
-std::vector<FilePair> read_four_columns(const fs::path& file, std::vector<SkippedInput>& skipped) {
+std::vector<FilePair> read_four_columns(const fs::path& file, const ListRules& rules,
+                                        std::vector<SkippedInput>& skipped) {
   std::vector<FilePair> pairs;
-  for (const io::TextLine& line : read_lines(file)) {
+  for (const io::TextLine& line : read_lines(file, rules)) {
     const std::string where = at_line(file, line.number);
     const std::vector<std::string> columns = columns_of(line);
     const std::span<const std::string> words(columns);
@@ -93,6 +107,8 @@ std::vector<FilePair> read_four_columns(const fs::path& file, std::vector<Skippe
     if (first_ns && second_ns) {
       pairs.push_back(colour_first({{*first_ns, joined_words(words.subspan(1, second - 1))},
                                     {*second_ns, joined_words(words.subspan(second + 1))}}));
+      for (const StampedFile& entry : {pairs.back().color, pairs.back().depth})
+        if (!rules.outside) require_inside(entry, where);
     } else {
       skipped.push_back(malformed(file, line, "stamp rgb_file stamp depth_file"));
     }
@@ -238,7 +254,7 @@ bool counts_from_another_number(const NamedFrames& color, const NamedFrames& dep
 
 PairList read_associations(const fs::path& folder, const std::string& name, const ListRules& rules) {
   PairList list{{}, {}, 0, false, "by " + name};
-  std::vector<FilePair> pairs = read_four_columns(folder / name, list.skipped);
+  std::vector<FilePair> pairs = read_four_columns(folder / name, rules, list.skipped);
   list.numbered = rules.count_frames || are_numbers(pairs);
   if (rules.count_frames) number_in_order(pairs);
   if (!list.numbered) check_times(color_stamps(pairs), folder / name);
@@ -249,8 +265,8 @@ PairList read_associations(const fs::path& folder, const std::string& name, cons
 PairList read_two_lists(const fs::path& folder, const std::string& color, const std::string& depth,
                         const ListRules& rules) {
   PairList list{{}, {}, 0, false, "by the stamps of " + color + " and " + depth};
-  const std::vector<StampedFile> colors = read_list(folder / color, list.skipped);
-  const std::vector<StampedFile> depths = read_list(folder / depth, list.skipped);
+  const std::vector<StampedFile> colors = read_list(folder / color, rules, list.skipped);
+  const std::vector<StampedFile> depths = read_list(folder / depth, rules, list.skipped);
   if (rules.count_frames && falls(color_stamps(colors)) > 0 && colors.size() == depths.size())
     return pair_in_order(files_of(colors), files_of(depths));
   check_times(color_stamps(colors), folder / color);

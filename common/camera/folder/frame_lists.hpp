@@ -35,10 +35,11 @@ struct PairList {
 struct ListRules {
   std::int64_t tolerance_ns = kPairingToleranceNs;  ///< between the stamps of colour and depth
   bool count_frames = false;                        ///< stamps of associations do not matter: frames are numbered
+  bool outside = false;                             ///< images may lie outside the folder
 };
 
 /// The pairs of a list `stamp file stamp file`, as they are written; a depth image may occur twice. Throws SourceError:
-/// stamps that are not finite, or that go up and down too often to be times.
+/// stamps that are not finite, or that go up and down too often to be times; images outside the folder.
 PairList read_associations(const std::filesystem::path& folder, const std::string& list, const ListRules& rules = {});
 
 /// The pairs of a list of colour and one of depth, `stamp file`, closest first within the tolerance. Throws as above.

@@ -10,6 +10,8 @@
 
 #include "common/camera/folder/frame_names.hpp"
 #include "common/geometry/pose_list.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::camera {
@@ -63,14 +65,8 @@ bool is_csv(const std::filesystem::path& file) {
 /// Reads what has no stamps, and EuRoC's table; stamped poses of others are read_pose_list()'s.
 class TableReader {
  public:
-  Table read(const std::filesystem::path& file) {
-    const std::optional<std::string> text = io::read_text(file);
-    if (!text) {
-      table_.problem = "cannot be read";
-      return table_;
-    }
-    const bool csv = is_csv(file);
-    for (const io::TextLine& line : io::split_lines(*text, " \t\r\v\f,;[]")) take(line, csv);
+  Table read(const std::string& text, bool csv) {
+    for (const io::TextLine& line : io::split_lines(text, " \t\r\v\f,;[]")) take(line, csv);
     std::ranges::stable_sort(table_.poses, {}, &geometry::StampedPose::stamp_ns);
     const auto repeated = std::ranges::unique(table_.poses, {}, &geometry::StampedPose::stamp_ns);
     table_.poses.erase(repeated.begin(), repeated.end());
@@ -159,12 +155,17 @@ bool give_stamps(geometry::Trajectory& poses, std::int64_t count, const std::vec
   return true;
 }
 
+/// Throws io::IoError.
+std::string text_of(const FolderContents& contents, const std::string& file) {
+  return io::read_file(contents.folder / file, io::kPoses, contents.below(file));
+}
+
 GroundTruth read_pose_files(const FolderContents& contents, const PairList& list) {
   const NamedFrames named = read_frame_names(contents.poses);
   GroundTruth truth;
   std::size_t left_out = 0;
   for (std::size_t i = 0; i < contents.poses.size(); ++i) {
-    const Table one = TableReader().read(contents.folder / contents.poses[i]);
+    const Table one = TableReader().read(text_of(contents, contents.poses[i]), false);
     const bool fits = one.poses.size() == 1 && !one.stamped;
     left_out += !fits;
     if (fits)
@@ -185,9 +186,9 @@ std::string poses_of(std::size_t poses, const FolderContents& contents) {
 }
 
 /// Empty where it is another kind of table; then `problem` says what a list of stamped poses would need.
-std::optional<GroundTruth> read_stamped(const FolderContents& contents, std::string& problem) {
+std::optional<GroundTruth> read_stamped(const FolderContents& contents, const std::string& text, std::string& problem) {
   try {
-    geometry::PoseList list = geometry::read_pose_list(contents.folder / contents.poses.front());
+    geometry::PoseList list = geometry::read_pose_list(text, (contents.folder / contents.poses.front()).string());
     std::ranges::move(list.damages, std::back_inserter(list.notes));
     const std::size_t poses = list.poses.size();
     return GroundTruth{std::move(list.poses), poses_of(poses, contents), std::move(list.notes)};
@@ -199,12 +200,13 @@ std::optional<GroundTruth> read_stamped(const FolderContents& contents, std::str
 
 GroundTruth read_table(const FolderContents& contents, const PairList& list) {
   const std::filesystem::path file = contents.folder / contents.poses.front();
+  const std::string text = text_of(contents, contents.poses.front());
   std::string problem;
   if (!is_csv(file)) {
-    if (std::optional<GroundTruth> stamped = read_stamped(contents, problem)) return std::move(*stamped);
+    if (std::optional<GroundTruth> stamped = read_stamped(contents, text, problem)) return std::move(*stamped);
   }
   TableReader reader;
-  Table table = reader.read(file);
+  Table table = reader.read(text, is_csv(file));
   const std::string note = poses_of(table.poses.size(), contents);
   std::vector<std::string> remarks;
   if (table.left_out > 0)
@@ -228,7 +230,12 @@ GroundTruth read_table(const FolderContents& contents, const PairList& list) {
 
 GroundTruth read_ground_truth(const FolderContents& contents, const PairList& list, bool y_up) {
   if (contents.poses.empty()) return {};
-  GroundTruth truth = contents.poses.size() > 1 ? read_pose_files(contents, list) : read_table(contents, list);
+  GroundTruth truth;
+  try {
+    truth = contents.poses.size() > 1 ? read_pose_files(contents, list) : read_table(contents, list);
+  } catch (const io::IoError& error) {
+    truth.remarks.push_back("ground truth not used: " + why_unread(error));
+  }
   for (geometry::StampedPose& pose : truth.poses)
     pose.T_world_body = in_optical_axes(pose.T_world_body, contents.layout->axes, y_up);
   return truth;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/camera/unread_forms.hpp"
+#include "common/io/folder_walk.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -118,30 +119,31 @@ std::vector<std::string> split(const std::string& text, char mark) {
   return parts;
 }
 
-/// The files below `folder` that one alternative finds, part by part of its path.
-std::vector<std::string> find_one(const fs::path& folder, const std::string& pattern) {
+bool is_one_name(const std::string& pattern) {
+  return pattern.find_first_of("*?") == std::string::npos;
+}
+
+/// The files below `folder` that one alternative finds, part by part of its path. What has exactly the name of a file
+/// is taken for it whatever it is: who reads it says why it cannot be read.
+std::vector<std::string> find_one(io::FolderWalk& walk, const fs::path& folder, const std::string& pattern) {
   const std::size_t slash = pattern.find('/');
   const std::string here = pattern.substr(0, slash);
   std::vector<std::string> found;
   if (slash != std::string::npos && here == "..") {
-    for (const std::string& file : find_one(folder / "..", pattern.substr(slash + 1))) found.push_back("../" + file);
+    io::FolderWalk above(folder / "..");
+    for (const std::string& file : find_one(above, folder / "..", pattern.substr(slash + 1)))
+      found.push_back("../" + file);
     return found;
   }
-  std::error_code error;
-  std::vector<std::string> folders;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (!matches(here, name)) continue;
-    if (slash != std::string::npos && entry.is_directory(error)) folders.push_back(name);
-    if (slash == std::string::npos && entry.is_regular_file(error)) found.push_back(name);
+  for (const io::FolderEntry& entry : walk.entries(folder)) {
+    if (!matches(here, entry.name)) continue;
+    if (slash == std::string::npos) {
+      if (!entry.is_folder || is_one_name(here)) found.push_back(entry.name);
+    } else if (entry.is_folder && found.empty()) {  // one folder
+      for (const std::string& file : find_one(walk, folder / entry.name, pattern.substr(slash + 1)))
+        found.push_back(entry.name + "/" + file);
+    }
   }
-  std::ranges::sort(folders);
-  for (const std::string& name : folders) {
-    for (const std::string& file : find_one(folder / name, pattern.substr(slash + 1)))
-      found.push_back(name + "/" + file);
-    if (!found.empty()) break;  // one folder
-  }
-  std::ranges::sort(found);
   return found;
 }
 
@@ -152,10 +154,10 @@ bool has_extension(const std::string& file, const std::vector<std::string>& exte
 }
 
 /// The images of the first alternative that finds some.
-std::vector<std::string> find_images(const fs::path& folder, const std::string& pattern,
+std::vector<std::string> find_images(io::FolderWalk& walk, const fs::path& folder, const std::string& pattern,
                                      const std::vector<std::string>& extensions) {
   for (const std::string& alternative : split(pattern, '|')) {
-    std::vector<std::string> files = find_one(folder, alternative);
+    std::vector<std::string> files = find_one(walk, folder, alternative);
     std::erase_if(files, [&](const std::string& file) { return !has_extension(file, extensions); });
     if (!files.empty()) return files;
   }
@@ -169,8 +171,14 @@ bool is_list(const std::string& pattern) {
   return pattern.ends_with(".txt");
 }
 
-std::string first_file(const fs::path& folder, const std::string& pattern) {
-  const std::vector<std::string> files = find_files(folder, pattern);
+std::vector<std::string> find_files(io::FolderWalk& walk, const fs::path& folder, const std::string& pattern) {
+  for (const std::string& alternative : split(pattern, '|'))
+    if (std::vector<std::string> files = find_one(walk, folder, alternative); !files.empty()) return files;
+  return {};
+}
+
+std::string first_file(io::FolderWalk& walk, const fs::path& folder, const std::string& pattern) {
+  const std::vector<std::string> files = find_files(walk, folder, pattern);
   return files.empty() ? std::string() : files.front();
 }
 
@@ -187,50 +195,58 @@ void leave_out(std::vector<std::string>& files, const std::vector<std::string>& 
   std::erase_if(files, [&](const std::string& file) { return std::ranges::binary_search(others, file); });
 }
 
-std::optional<FolderContents> fitting(const fs::path& folder, const Layout& layout) {
+std::optional<FolderContents> fitting(io::FolderWalk& walk, const fs::path& folder, const Layout& layout) {
   const std::string needs = layout.needs, names = layout.folder_names;
   const bool required = !needs.empty() || !names.empty();
-  if (required && find_files(folder, needs).empty() && !is_named(folder, names)) return std::nullopt;
-  FolderContents contents{folder, &layout, first_file(folder, layout.associations), {}, {}, {}, {}, {}};
+  if (required && find_files(walk, folder, needs).empty() && !is_named(folder, names)) return std::nullopt;
+  FolderContents contents{folder, &layout, first_file(walk, folder, layout.associations), {}, {}, {}, {}, {}};
   if (contents.associations.empty() && is_list(layout.color)) {
-    contents.color_list = first_file(folder, layout.color);
-    contents.depth_list = first_file(folder, layout.depth);
+    contents.color_list = first_file(walk, folder, layout.color);
+    contents.depth_list = first_file(walk, folder, layout.depth);
     if (contents.color_list.empty() || contents.depth_list.empty()) return std::nullopt;
   } else if (contents.associations.empty()) {
-    contents.depth = find_images(folder, layout.depth, kDepthExtensions);
+    contents.depth = find_images(walk, folder, layout.depth, kDepthExtensions);
     if (contents.depth.empty()) return std::nullopt;
-    contents.color = find_images(folder, layout.color, kColorExtensions);
+    contents.color = find_images(walk, folder, layout.color, kColorExtensions);
     leave_out(contents.color, contents.depth);
     if (contents.color.empty()) return std::nullopt;
   }
-  contents.poses = find_files(folder, layout.poses);
+  contents.poses = find_files(walk, folder, layout.poses);
   return contents;
 }
 
-std::optional<FolderContents> fitting_layout(const fs::path& folder) {
+std::optional<FolderContents> fitting_layout(io::FolderWalk& walk, const fs::path& folder) {
   for (const Layout& layout : kLayouts)
-    if (auto contents = fitting(folder, layout)) return contents;
+    if (auto contents = fitting(walk, folder, layout)) return contents;
   return std::nullopt;
 }
 
-/// Folders below that have a layout, at most `depth` levels down.
-std::vector<FolderContents> below(const fs::path& folder, int depth) {
-  constexpr std::size_t kMostFolders = 64;
-  std::vector<fs::path> folders;
-  std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
-    if (entry.is_directory(error) && folders.size() < kMostFolders) folders.push_back(entry.path());
-  std::ranges::sort(folders);
-  std::vector<FolderContents> found;
-  for (const fs::path& child : folders) {
-    if (auto contents = fitting_layout(child)) {
+/// Looks for layouts in a folder and those below it.
+class Search {
+ public:
+  explicit Search(io::FolderWalk& walk) : walk_(walk) {}
+
+  /// At a folder and at most `levels` below it, each folder once. Throws SourceError: too many.
+  void look_at(const fs::path& folder, int levels) {
+    if (!walk_.enter(folder)) return;
+    if (++looked_at_ > kMostFolders)
+      throw SourceError(folder.string() + " and the folders beside it are more than " + std::to_string(kMostFolders) +
+                        ": name the one with the sequence");
+    if (auto contents = fitting_layout(walk_, folder)) {
       found.push_back(*contents);
-    } else if (depth > 1) {
-      for (FolderContents& deeper : below(child, depth - 1)) found.push_back(std::move(deeper));
+    } else if (levels > 0) {
+      for (const io::FolderEntry& entry : walk_.entries(folder))
+        if (entry.is_folder) look_at(folder / entry.name, levels - 1);
     }
   }
-  return found;
-}
+
+  std::vector<FolderContents> found;
+
+ private:
+  static constexpr int kMostFolders = 2000;
+  io::FolderWalk& walk_;
+  int looked_at_ = 0;
+};
 
 std::string known_layouts() {
   std::string names;
@@ -245,7 +261,10 @@ SourceError several(const fs::path& folder, const std::vector<FolderContents>& f
   return SourceError(text + (found.size() > kShown ? "\n  ..." : ""));
 }
 
-SourceError unknown(const fs::path& folder) {
+SourceError unknown(const fs::path& folder, const io::FolderWalk& walk) {
+  if (!walk.led_out().empty())
+    return SourceError("folder " + folder.string() + " has no colour and depth: " + walk.led_out().string() +
+                       " is a link that leads out of it; " + kOutsideAdvice);
   if (const std::string advice = advice_for_folder(folder); !advice.empty()) return SourceError(advice);
   return SourceError("folder " + folder.string() + " has no colour and depth in a layout that is known (" +
                      known_layouts() +
@@ -258,22 +277,35 @@ constexpr int kLevels = 3;  // an archive unpacks into a folder of its own, and 
 
 }  // namespace
 
-std::vector<std::string> find_files(const fs::path& folder, const std::string& pattern) {
-  for (const std::string& alternative : split(pattern, '|'))
-    if (std::vector<std::string> files = find_one(folder, alternative); !files.empty()) return files;
-  return {};
+fs::path FolderContents::below(const std::string& file) const {
+  return outside ? fs::path() : file.starts_with("../") ? folder / ".." : folder;
 }
 
-FolderContents recognise_folder(const fs::path& folder) {
+std::vector<std::string> find_files(const FolderContents& contents, const std::string& pattern) {
+  io::FolderWalk walk(contents.below());
+  try {
+    return find_files(walk, contents.folder, pattern);
+  } catch (const io::IoError&) {  // of a folder above with too many files
+    return {};
+  }
+}
+
+FolderContents recognise_folder(const fs::path& folder, bool outside) {
   std::error_code error;
   if (const std::string advice = advice_for_file(folder); !advice.empty()) throw SourceError(advice);
   if (!fs::exists(folder, error)) throw SourceError("folder " + folder.string() + " does not exist");
   if (!fs::is_directory(folder, error)) throw SourceError(folder.string() + " is not a folder");
-  if (auto contents = fitting_layout(folder)) return *contents;
-  const std::vector<FolderContents> found = below(folder, kLevels);
-  if (found.size() > 1) throw several(folder, found);
-  if (found.empty()) throw unknown(folder);
-  return found.front();
+  io::FolderWalk walk(outside ? fs::path() : folder);
+  Search search(walk);
+  try {
+    search.look_at(folder, kLevels);
+  } catch (const io::IoError& failure) {
+    throw SourceError(failure.what());
+  }
+  if (search.found.size() > 1) throw several(folder, search.found);
+  if (search.found.empty()) throw unknown(folder, walk);
+  search.found.front().outside = outside;
+  return search.found.front();
 }
 
 }  // namespace rtd::camera

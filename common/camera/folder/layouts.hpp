@@ -43,13 +43,17 @@ struct FolderContents {
   std::string associations, color_list, depth_list;  ///< lists that are there
   std::vector<std::string> color, depth;             ///< images, where there is no list
   std::vector<std::string> poses;
+  bool outside = false;  ///< files may lie elsewhere: by links, and where lists say so
+
+  /// The folder that one of the files found, or an image of a list (""), must lie below; empty: it may lie anywhere.
+  std::filesystem::path below(const std::string& file = "") const;
 };
 
-/// The first layout that fits, of the folder or of the only folder below that has one. Throws SourceError: no such
-/// folder, none fits, several below it, or only forms without a reader.
-FolderContents recognise_folder(const std::filesystem::path& folder);
+/// The first layout that fits, of the folder or of the only folder below that has one; `outside`: links may lead out of
+/// it. Throws SourceError: no such folder, none fits, several below it, too many, or only forms without a reader.
+FolderContents recognise_folder(const std::filesystem::path& folder, bool outside = false);
 
-/// The files that a pattern finds, sorted by name.
-std::vector<std::string> find_files(const std::filesystem::path& folder, const std::string& pattern);
+/// The files of a folder that a pattern finds, sorted by name.
+std::vector<std::string> find_files(const FolderContents& contents, const std::string& pattern);
 
 }  // namespace rtd::camera

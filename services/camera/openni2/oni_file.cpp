@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <optional>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 
 namespace rtd::camera {
@@ -113,10 +114,13 @@ OniCheck check_oni(std::istream& file, const std::string& name) {
 }
 
 void require_oni_file(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) return;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw OniFileError(path.string() + " cannot be read; check its permissions");
-  check_oni(file, path.string());
+  if (std::error_code none; !std::filesystem::exists(path, none)) return;
+  try {
+    io::InputStream file(path);
+    check_oni(file, path.string());
+  } catch (const io::IoError& error) {
+    throw OniFileError(error.what());
+  }
 }
 
 }  // namespace rtd::camera

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/model_file.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <system_error>
-
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "services/detector/core/detector_config.hpp"
 
 namespace rtd::detector {
@@ -17,13 +14,13 @@ void ModelName::refuse(const std::string& cause) const {
 }
 
 std::vector<std::uint8_t> read_model_file(const ModelName& model) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(model.path, ignored)) model.refuse("there is no such file");
-  std::ifstream file(model.path, std::ios::binary);
-  if (!file) model.refuse("cannot be opened");
-  std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (bytes.empty()) model.refuse("is empty");
-  return bytes;
+  try {
+    const std::string content = io::read_file(model.path, io::kNetwork);
+    if (content.empty()) model.refuse("is empty");
+    return {content.begin(), content.end()};
+  } catch (const io::IoError& error) {
+    model.refuse(error.what());
+  }
 }
 
 }  // namespace rtd::detector

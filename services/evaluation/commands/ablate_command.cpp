@@ -6,13 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/input_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
@@ -158,8 +158,8 @@ int run_in_folder(const AblateOptions& options, const VariantTask& task, const f
 }
 
 std::optional<Measurement> kept_measurement(const fs::path& folder, const nlohmann::json& settings) {
-  std::ifstream file(folder / kTaskFile);
-  const nlohmann::json before = nlohmann::json::parse(file, nullptr, false);
+  const std::string task = io::try_read_file(folder / kTaskFile, io::kResults).value_or("");
+  const nlohmann::json before = nlohmann::json::parse(task, nullptr, false);
   if (!before.is_object() || before.value("settings", nlohmann::json()) != settings) return std::nullopt;
   std::optional<Measurement> measurement = read_measurement(folder);
   if (measurement) measurement->duration_s = before.value("duration_s", 0.0);

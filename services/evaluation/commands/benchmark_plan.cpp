@@ -10,7 +10,8 @@
 
 #include "common/camera/frame_source.hpp"
 #include "common/io/bytes.hpp"
-#include "common/io/text.hpp"
+#include "common/io/folder_walk.hpp"
+#include "common/io/input_file.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/process/executable.hpp"
 #include "common/service/config.hpp"
@@ -37,7 +38,7 @@ std::string find_program(const std::string& given) {
 
 /// Another build has other bytes.
 std::string build_of(const std::string& program) {
-  const std::optional<std::string> bytes = io::read_text(program);
+  const std::optional<std::string> bytes = io::try_read_file(program, io::kNetwork);
   if (!bytes) throw service::ConfigError("--program " + program + " cannot be read");
   return fmt::format("{:08x}-{}", io::crc32(io::bytes_of(*bytes)), bytes->size());
 }
@@ -67,6 +68,11 @@ fs::path detections_file(const BenchmarkOptions& options, const BenchmarkPlan& p
          fmt::format("{}{}.{}", planned.input->sequence.name, run, fs::path(plan.model).stem().string());
 }
 
+/// Of OpenLORIS it has links to the images, all of which find_sequences() has found below the sequence.
+std::string source_of(const BenchmarkPlan& plan, const fs::path& folder) {
+  return "tum:" + folder.string() + (plan.dataset == Dataset::kOpenloris ? "?outside=1" : "");
+}
+
 }  // namespace
 
 BenchmarkPlan plan_benchmark(const BenchmarkOptions& options) {
@@ -90,7 +96,7 @@ void prepare_inputs(const BenchmarkOptions& options, BenchmarkPlan& plan) {
         folder = fs::absolute(plan.out_dir) / "sequences" / sequence.name;
         prepare_openloris(sequence.folder, folder);
       }
-      plan.inputs.push_back({sequence, "tum:" + folder.string()});
+      plan.inputs.push_back({sequence, source_of(plan, folder)});
     } catch (const camera::SourceError& error) {
       plan.left_out.push_back({sequence.folder.string(), error.what()});
     }
@@ -114,10 +120,10 @@ std::vector<PlannedRun> missing_runs(const BenchmarkOptions& options, const Benc
 void prepare_detections(const BenchmarkPlan& plan) {
   const fs::path folder = detections_folder(plan);
   fs::create_directories(folder);
-  for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
-    const std::optional<std::string> text = io::read_text(file.path());
+  for (const fs::path& file : io::FolderWalk().paths(folder)) {
+    const std::optional<std::string> text = io::try_read_file(file, io::kResults);
     std::error_code ignored;
-    if (text && !nlohmann::json::accept(*text)) fs::remove(file.path(), ignored);
+    if (text && !nlohmann::json::accept(*text)) fs::remove(file, ignored);
   }
 }
 

@@ -9,7 +9,8 @@
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
-#include "common/io/text.hpp"
+#include "common/io/folder_walk.hpp"
+#include "common/io/input_file.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -40,11 +41,9 @@ void require_folder(const std::string& folder, const std::string& option) {
 /// Every `step`-th image of a folder, by name.
 std::vector<fs::path> images_in(const std::string& folder, int step) {
   require_folder(folder, "--images");
-  std::vector<fs::path> all, taken;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (is_image(entry.path())) all.push_back(entry.path());
+  std::vector<fs::path> all = io::FolderWalk().paths(folder), taken;
+  std::erase_if(all, [](const fs::path& file) { return !is_image(file); });
   if (all.empty()) throw service::ConfigError("--images " + folder + ": has no images (jpg, jpeg, png)");
-  std::ranges::sort(all);
   for (std::size_t i = 0; i < all.size(); i += static_cast<std::size_t>(step)) taken.push_back(all[i]);
   return taken;
 }
@@ -61,8 +60,8 @@ fs::path partner_of(const fs::path& image, const std::string& folder, const std:
 
 std::string detect_format(const std::string& folder) {
   std::size_t yolo = 0, voc = 0;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const fs::path name = entry.path().filename();
+  for (const fs::path& file : io::FolderWalk().paths(folder)) {
+    const fs::path name = file.filename();
     if (name.extension() == ".txt" && name != "classes.txt") ++yolo;
     if (name.extension() == ".xml") ++voc;
   }
@@ -105,7 +104,7 @@ ImageLabels LabelFolder::read(const fs::path& image, ImageSize size,
                               const std::vector<std::string>& class_names) const {
   const fs::path path = file_of(image);
   if (path.empty()) return {};
-  const LabelFile text{path.filename().string(), io::read_text(path).value_or("")};
+  const LabelFile text{path.filename().string(), io::try_read_file(path, io::kLabels).value_or("")};
   return format_ == "yolo" ? parse_yolo_labels(text, size, class_names) : parse_voc_labels(text, size);
 }
 

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <filesystem>
 
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
@@ -54,7 +55,7 @@ ModelUnderTest::ModelUnderTest(const detector::DetectorConfig& config, double le
     : facts_{.name = fs::path(config.model_path).filename().string(), .engine = config.engine},
       detector_(keep_from(config, least_score)),
       timed_(config) {
-  const std::string bytes = io::read_text(config.model_path).value_or("");
+  const std::string bytes = io::try_read_file(config.model_path, io::kNetwork).value_or("");
   const detector::OnnxFile file =
       detector::read_onnx_file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   facts_.size_mb = static_cast<double>(bytes.size()) * 1e-6;
@@ -89,7 +90,7 @@ std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, doub
   config.kernel_cache = service::kernel_cache_folder(service::process_environment());
   config.onnxruntime = service::find_onnxruntime();
   if (!options.names_file.empty()) {
-    config.class_names = detector::split_lines(io::read_text(options.names_file).value_or(""));
+    config.class_names = detector::split_lines(io::try_read_file(options.names_file, io::kLabels).value_or(""));
     if (config.class_names.empty())
       throw service::ConfigError("--names " + options.names_file + ": is missing or empty");
   }

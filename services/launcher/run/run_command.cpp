@@ -15,6 +15,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
@@ -79,7 +80,7 @@ void write_record(const run_record::RunRecord& record, const std::string& out_di
 /// Of a slam that was restarted in its own world trajectory.txt begins with the poses that it published before.
 void join_trajectory(run_record::RunRecord& record, const std::string& out_dir) {
   const std::string file = out_dir + "/trajectory.txt";
-  const std::optional<std::string> last = io::read_text(file);
+  const std::optional<std::string> last = io::try_read_file(file, io::kResults);
   const auto lines = last ? io::split_lines(*last) : std::vector<io::TextLine>();
   const std::optional<double> first_s = lines.empty() ? std::nullopt : io::parse_number(lines.front().fields.front());
   if (!first_s) return;

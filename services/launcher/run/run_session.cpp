@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/camera/live_uri.hpp"
-#include "common/io/text.hpp"
+#include "common/io/input_file.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/launcher/process/lost_lock.hpp"
@@ -243,7 +243,7 @@ void RunSession::sample_memory(milliseconds time) {
   if (time < next_sample_) return;
   next_sample_ = time + kMemoryPeriod;
   for (const auto& [service, process] : supervisor_.running()) {
-    const auto status = io::read_text("/proc/" + std::to_string(process) + "/status");
+    const auto status = io::try_read_file("/proc/" + std::to_string(process) + "/status", io::kKernelText);
     usage_.add_sample(service, peak_rss_mb(status.value_or("")));
   }
 }

@@ -7,10 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
 #include <map>
 #include <regex>
+#include <sstream>
 
+#include "common/io/input_file.hpp"
 #include "common/io/recording_forms.hpp"
 
 namespace rtd::recorder {
@@ -73,7 +74,7 @@ bool OutputFiles::owns_metadata() const {
   const fs::file_status status = fs::symlink_status(metadata(), ignored);
   if (!fs::exists(status)) return true;
   if (!fs::is_regular_file(status)) return false;
-  std::ifstream file(metadata());
+  std::istringstream file(io::try_read_file(metadata(), io::kSettings).value_or(""));
   std::string line;
   if (!std::getline(file, line) || line != "rosbag2_bagfile_information:") return false;
   bool any = false;

@@ -3,9 +3,10 @@
 #include "services/viewer/web/site.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <system_error>
+
+#include "common/io/input_file.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -20,7 +21,7 @@ const char* mime_type(std::string_view name) {
   return "application/octet-stream";
 }
 
-constexpr std::size_t kMaxFiles = 10'000;  // Debian has 600; what a wrong folder has is not listed to its end
+constexpr std::size_t kMaxSeen = 100'000;  // Debian has 600 files; what a wrong folder has is not listed to its end
 
 bool lies_in(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
@@ -33,7 +34,8 @@ std::map<std::string, fs::path> scripts_below(const fs::path& three) {
   const fs::path folder = fs::canonical(three, error);
   if (error) return files;
   fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
-  for (; !error && entry != fs::recursive_directory_iterator() && files.size() < kMaxFiles; entry.increment(error)) {
+  const fs::recursive_directory_iterator end;
+  for (std::size_t seen = 0; !error && entry != end && seen++ < kMaxSeen; entry.increment(error)) {
     if (entry->path().extension() != ".js") continue;
     std::error_code unusable;
     const fs::path file = fs::canonical(entry->path(), unusable);
@@ -64,10 +66,9 @@ std::optional<SiteFile> Site::three_file(std::string name) const {
   if (name.starts_with(kBuild)) name.erase(0, kBuild.size());
   const auto known = three_.find(name);
   if (known == three_.end()) return std::nullopt;
-  std::ifstream file(known->second, std::ios::binary);
-  if (!file) return std::nullopt;
-  return SiteFile{
-      .content = std::string(std::istreambuf_iterator<char>(file), {}), .type = mime_type(name), .keeps = true};
+  std::optional<std::string> script = io::try_read_file(known->second, {"a script", 16 * io::kMegabyte});
+  if (!script) return std::nullopt;
+  return SiteFile{.content = *std::move(script), .type = mime_type(name), .keeps = true};
 }
 
 bool Site::has_three() const {

@@ -84,7 +84,7 @@ TEST_F(ConvertTest, wrong_usage_is_exit_code_2) {
   EXPECT_EQ(convert({kScene, scratch_ / "x.bag"}), 2);
   EXPECT_THAT(output_, HasSubstr("bags are read, not written"));
   EXPECT_EQ(convert({"bag:" + (scratch_ / "none.bag"), scratch_ / "x.mcap"}), 2);
-  EXPECT_THAT(output_, HasSubstr("none.bag: cannot read: No such file"));
+  EXPECT_THAT(output_, HasSubstr("none.bag cannot be read: No such file"));
   EXPECT_EQ(convert({"synthetic:box?frames=0", scratch_ / "x.mcap"}), 2);
   EXPECT_THAT(output_, HasSubstr("is endless"));
   EXPECT_FALSE(fs::exists(scratch_ / "x.mcap"));

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "common/bus/commands.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
@@ -138,7 +139,7 @@ class MapAttackTest : public MapServiceTest {
     start(service::Pace::kLockstep);
     for (std::uint64_t seq = 0; seq < 3; ++seq) step(seq);
   }
-  std::string startup() const { return io::read_text(startup_).value_or("gone"); }
+  std::string startup() const { return io::try_read_file(startup_, io::kResults).value_or("gone"); }
 
   const std::filesystem::path maps_ = folder_ / "maps", startup_ = folder_ / ".profile";
 };
@@ -172,7 +173,7 @@ TEST_F(MapAttackTest, only_maps_are_replaced) {
   map_something();
   std::ofstream(maps_ / "notes.rtdmap") << "mine";
   EXPECT_THAT(call("slam/save_map", "notes"), HasSubstr("failed: notes.rtdmap exists and is not a map"));
-  EXPECT_EQ(io::read_text(maps_ / "notes.rtdmap"), "mine");
+  EXPECT_EQ(io::try_read_file(maps_ / "notes.rtdmap", io::kResults), "mine");
   EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to"));
   EXPECT_THAT(call("slam/save_map", "room"), HasSubstr("saved to")) << "its own map it may replace";
 }

@@ -14,6 +14,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
@@ -77,7 +78,7 @@ void print(const std::string& what, const eval::MaskOverlap& overlap) {
 
 TEST_F(PersonMaskQuality, agrees_with_people_drawn_by_hand) {
   PersonSegmenter segmenter(masks_);
-  const auto outlines = nlohmann::json::parse(io::read_text(PERSON_OUTLINES).value());
+  const auto outlines = nlohmann::json::parse(io::try_read_file(PERSON_OUTLINES, io::kResults).value());
   ASSERT_EQ(outlines.size(), 20U);
   double sum = 0, least = 1;
   int images = 0;

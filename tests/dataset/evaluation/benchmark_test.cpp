@@ -12,6 +12,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "tests/support/run_command.hpp"
 
@@ -52,7 +53,7 @@ class BenchmarkCommand : public ::testing::Test {
     fs::create_symlink(clips_ / "walk_xyz/rgb", data(name) / "color");
     fs::create_symlink(clips_ / "walk_xyz/groundtruth.txt", data(name) / "groundtruth.txt");
     std::ofstream color(data(name) / "color.txt"), depth(data(name) / "aligned_depth.txt");
-    const auto lines = io::split_lines(io::read_text(clips_ / "walk_xyz/associations.txt").value());
+    const auto lines = io::split_lines(io::try_read_file(clips_ / "walk_xyz/associations.txt", io::kFrameList).value());
     for (int i = 0; i < kFrames; ++i) {
       const auto& fields = lines.at(static_cast<std::size_t>(i)).fields;
       const std::string file = "aligned_depth/" + fs::path(fields[3]).filename().string();
@@ -81,8 +82,10 @@ class BenchmarkCommand : public ::testing::Test {
     output_ = result.output;
     return result.exit_code;
   }
-  nlohmann::json results() const { return nlohmann::json::parse(io::read_text(out() / "benchmark.json").value()); }
-  std::string page() const { return io::read_text(out() / "benchmark.html").value_or(""); }
+  nlohmann::json results() const {
+    return nlohmann::json::parse(io::try_read_file(out() / "benchmark.json", io::kResults).value());
+  }
+  std::string page() const { return io::try_read_file(out() / "benchmark.html", io::kResults).value_or(""); }
   fs::path data(const std::string& name) const { return scratch_ / "data" / name; }
   fs::path out() const { return scratch_ / "out"; }
 

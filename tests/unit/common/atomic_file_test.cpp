@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "common/io/byte_source.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/process/out_folder.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
@@ -30,7 +31,7 @@ class AtomicFileTest : public ::testing::Test {
  protected:
   fs::path at(const std::string& name) const { return folder_.path() / name; }
   void put(const std::string& name, const std::string& content) const { std::ofstream(at(name)) << content; }
-  std::string text(const std::string& name) const { return read_text(at(name)).value_or("nothing"); }
+  std::string text(const std::string& name) const { return try_read_file(at(name), kResults).value_or("nothing"); }
   std::size_t files() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()));
   }

@@ -198,7 +198,7 @@ TEST(ImageCodecs, write_and_read_files_by_their_extension) {
   EXPECT_TRUE(same(read_image(folder / "a.PNG", {.pixels = PixelsAs::kStored}).pixels, depth));
   EXPECT_TRUE(write_image(folder / "a.jpeg", scene(CV_8UC3)));
   EXPECT_FALSE(write_image(folder / "a.bmp", scene(CV_8UC3)));
-  EXPECT_EQ(read_image("/nowhere.png").problem, "cannot be read");
+  EXPECT_THAT(read_image("/nowhere.png").problem, testing::HasSubstr("cannot be read"));
   fs::remove_all(folder);
 }
 

@@ -89,7 +89,7 @@ TEST(PoseList, names_a_few_broken_rows_and_refuses_more) {
   EXPECT_THAT([] { read_text_of("1 nan 0 0 0 0 0 1\n"); }, ThrowsMessage<TrajectoryError>(HasSubstr("holds no poses")));
   EXPECT_THAT([] { read_text_of("# nothing\n\n"); }, ThrowsMessage<TrajectoryError>(HasSubstr("holds no poses")));
   EXPECT_THAT([] { read_pose_list(std::filesystem::path("/no/such.txt")); },
-              ThrowsMessage<TrajectoryError>(HasSubstr("no such file")));
+              ThrowsMessage<TrajectoryError>(HasSubstr("No such file")));
 }
 
 }  // namespace

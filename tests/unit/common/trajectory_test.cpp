@@ -126,7 +126,7 @@ TEST(TumTrajectory, missing_file_and_folder_are_named) {
         try {
           read_tum_trajectory(std::filesystem::path("/nonexistent/t.txt"));
         } catch (const TrajectoryError& error) {
-          EXPECT_THAT(error.what(), testing::HasSubstr("/nonexistent/t.txt: no such file"));
+          EXPECT_THAT(error.what(), testing::HasSubstr("/nonexistent/t.txt cannot be read: No such file"));
           throw;
         }
       },

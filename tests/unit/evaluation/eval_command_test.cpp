@@ -208,7 +208,7 @@ TEST_F(EvalCommand, no_pairs_is_exit_1_and_reports_both_spans_and_options) {
 TEST_F(EvalCommand, missing_and_malformed_files_are_exit_2_with_cause_and_place) {
   const Outcome missing = run({folder_.file("nowhere.txt"), truth_});
   EXPECT_EQ(missing.code, 2);
-  EXPECT_THAT(missing.err, AllOf(HasSubstr("nowhere.txt"), HasSubstr("no such file")));
+  EXPECT_THAT(missing.err, AllOf(HasSubstr("nowhere.txt"), HasSubstr("No such file")));
   const Outcome malformed = run({estimate_, folder_.write("bad.txt", "1 0 0 0 0 0 0 1\n2 0 0\n")});
   EXPECT_EQ(malformed.code, 2);
   EXPECT_THAT(malformed.err, AllOf(HasSubstr("bad.txt:2"), HasSubstr("3 columns instead of 8")));

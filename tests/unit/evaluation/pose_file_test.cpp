@@ -3,6 +3,10 @@
 #include "services/evaluation/core/trajectory/pose_file.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "common/mcap/recording_file.hpp"
 #include "common/mcap/writer.hpp"
@@ -115,9 +119,24 @@ TEST_F(PoseFileTest, tum_is_read_as_before) {
   const std::string file = folder_.write("tum.txt", "# title\n1.5 1 2 3 0 0 0 1\n");
   EXPECT_EQ(read_pose_file(file, {}).poses.at(0).stamp_ns, 1'500'000'000);
   refuses(folder_.write("seven.txt", "1.5 1 2 3 0 0 0\n"), "seven.txt:1", "7 columns instead of 8");
-  refuses("/absent/tum.txt", "/absent/tum.txt", "no such file");
+  refuses("/absent/tum.txt", "/absent/tum.txt", "No such file");
   refuses(file + "?topic=/x", "tum.txt", "topic and child are for recordings");
   refuses(file + "?tpic=/x", "tpic=/x", "expected: FILE?topic=TOPIC");
+}
+
+TEST_F(PoseFileTest, only_a_pipe_that_the_user_hands_over_is_read) {
+  ASSERT_EQ(mkfifo((folder_.path() / "groundtruth.txt").c_str(), 0600), 0);
+  refuses(folder_.path() / "groundtruth.txt", "groundtruth.txt", "is a pipe, not a regular file");
+  std::filesystem::create_symlink("/dev/zero", folder_.path() / "zero.txt");
+  refuses(folder_.path() / "zero.txt", "zero.txt", "is a device, not a regular file");
+  std::filesystem::resize_file(folder_.write("sparse.txt", ""), 30'000'000'000);
+  refuses(folder_.path() / "sparse.txt", "sparse.txt", "has 30 GB, at most 256 MB are read as a list of poses");
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  ASSERT_EQ(write(ends[1], "1.5 1 2 3 0 0 0 1\n", 18), 18);
+  close(ends[1]);
+  EXPECT_THAT(read_pose_file("/dev/fd/" + std::to_string(ends[0]), {}).poses, SizeIs(1));
+  close(ends[0]);
 }
 
 msg::Header header_at(std::int64_t stamp_ns, const std::string& frame = "map") {

@@ -150,7 +150,8 @@ TEST_F(Report, unusable_files_become_notes) {
   record_.trajectory_path = folder_.file("gone.txt");
   const auto report = json();
   EXPECT_TRUE(report["ate_rmse_m"].is_null());
-  EXPECT_THAT(report["notes"].dump(), AllOf(HasSubstr("bad.txt:1"), HasSubstr("gone.txt: no such file")));
+  EXPECT_THAT(report["notes"].dump(),
+              AllOf(HasSubstr("bad.txt:1"), HasSubstr("gone.txt cannot be read: No such file")));
 }
 
 TEST_F(Report, ground_truth_of_another_time_is_a_note) {

@@ -196,7 +196,7 @@ TEST_F(ReportCommand, without_a_run_is_exit_code_2_and_without_room_1) {
   EXPECT_EQ(run_report(
                 {folder_.file("nowhere")}, [] { return true; }, out_, err_),
             2);
-  EXPECT_THAT(err_.str(), HasSubstr("nowhere/run.json: cannot be opened"));
+  EXPECT_THAT(err_.str(), HasSubstr("nowhere/run.json cannot be read"));
   std::filesystem::create_directory(folder_.file("report.json"));
   EXPECT_EQ(report(), 1);
   EXPECT_THAT(err_.str(), HasSubstr("report.json: this is a folder"));

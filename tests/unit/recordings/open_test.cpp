@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/recordings/open.hpp"
 
+#include <sys/stat.h>
+
 #include <fstream>
 #include <random>
 
@@ -151,6 +153,28 @@ TEST_F(OpenTest, what_is_missing_or_damaged_is_named_and_the_rest_is_there) {
   EXPECT_GT(messages_of(*cut.source).size(), 100U) << "what was unpacked before is there";
 }
 
+TEST_F(OpenTest, a_folder_gives_only_what_lies_in_it) {
+  folder_.mcap("other.mcap", samples(0, 6));
+  folder_.mcap("bag/bag_0.mcap", samples(0, 4));
+  const auto write_metadata = [&](const std::string& name) {
+    folder_.file("bag/metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [bag_0.mcap, " + name + "]}");
+  };
+  for (const std::string& name : {std::string("../other.mcap"), folder_ / "other.mcap", std::string("/etc/passwd")}) {
+    write_metadata(name);
+    const Opened opened = open(folder_ / "bag");
+    EXPECT_EQ(messages_of(*opened.source), samples(0, 4)) << name;
+    EXPECT_THAT(opened.damages, ElementsAre(HasSubstr(name + " is missing")));
+  }
+  for (const char* target : {"../other.mcap", "../none.mcap"}) {
+    fs::remove(folder_ / "bag/link.mcap");
+    fs::create_symlink(target, folder_ / "bag/link.mcap");
+    write_metadata("link.mcap");
+    EXPECT_THAT([&] { open(folder_ / "bag"); },
+                ThrowsMessage<mcap::RecordingFileError>(
+                    AllOf(HasSubstr("bag/link.mcap: leads out of the folder"), HasSubstr("name the file itself"))));
+  }
+}
+
 TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
   const auto refuses = [](const std::string& path, const std::string& text) {
     EXPECT_THAT([&] { open(path); }, ThrowsMessage<mcap::RecordingFileError>(HasSubstr(text))) << path;
@@ -172,6 +196,13 @@ TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
   folder_.file("m/metadata.yaml",
                "rosbag2_bagfile_information: {relative_file_paths: [x.db3], compression_format: lz4}");
   refuses(folder_ / "m", "'lz4': only zstd is known");
+  fs::remove(folder_ / "m/metadata.yaml");
+  ASSERT_EQ(mkfifo((folder_ / "m/metadata.yaml").c_str(), 0600), 0);
+  refuses(folder_ / "m", "metadata.yaml: is a pipe");
+  for (const char* name : {"p.mcap", "p.db3", "p.bag"}) {
+    ASSERT_EQ(mkfifo((folder_ / name).c_str(), 0600), 0);
+    refuses(folder_ / name, std::string(name) + ": is a pipe");
+  }
 }
 
 TEST_F(OpenTest, nothing_stays_behind_in_the_folder_for_temporary_files) {

@@ -134,7 +134,7 @@ TEST_P(Compressions, no_byte_flipped_crashes_the_reader) {
 TEST(BagReader, refuses_what_is_no_bag_of_version2) {
   const auto open = [](const std::string& bytes) { BagReader reader(TemporaryFile("x.bag", bytes).path()); };
   EXPECT_THAT([] { BagReader("/nowhere/x.bag"); }, ThrowsMessage<BagError>(HasSubstr("cannot be read")));
-  EXPECT_THAT([] { BagReader("/"); }, ThrowsMessage<BagError>(HasSubstr("is a folder")));
+  EXPECT_THAT([] { BagReader("/"); }, ThrowsMessage<BagError>(HasSubstr("this is a folder")));
   EXPECT_THAT([&] { open(""); }, ThrowsMessage<BagError>(HasSubstr("is not a ROS bag")));
   EXPECT_THAT([&] { open("\x89MCAP0\r\n and more of it"); }, ThrowsMessage<BagError>(HasSubstr("is not a ROS bag")));
   EXPECT_THAT([&] { open("#ROSBAG V1.2\nabc"); },

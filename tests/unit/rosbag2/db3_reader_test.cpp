@@ -113,7 +113,7 @@ TEST_F(Db3ReaderTest, reads_a_file_that_was_never_closed_and_leaves_it_as_it_is)
 
 TEST_F(Db3ReaderTest, refuses_files_that_are_no_recording) {
   const auto open = [](const fs::path& path) { return [path] { Db3Reader{path}; }; };
-  EXPECT_THAT(open(folder_ / "none.db3"), ThrowsMessage<Db3Error>(HasSubstr("no such file")));
+  EXPECT_THAT(open(folder_ / "none.db3"), ThrowsMessage<Db3Error>(HasSubstr("No such file")));
   EXPECT_THAT(open(written("")), ThrowsMessage<Db3Error>(HasSubstr("empty")));
   EXPECT_THAT(open(written(std::string(5000, 'x'))), ThrowsMessage<Db3Error>(HasSubstr("not a database")));
   EXPECT_THAT(open(closed("CREATE TABLE t(a)")), ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/filter_modes.hpp"
@@ -80,7 +81,7 @@ double first_known(double a, double b) {
 }
 
 nlohmann::json report_of(const std::filesystem::path& folder) {
-  return nlohmann::json::parse(io::read_text(folder / "report.json").value_or(""), nullptr, false);
+  return nlohmann::json::parse(io::try_read_file(folder / "report.json", io::kResults).value_or(""), nullptr, false);
 }
 
 AblationRow row_of(const std::string& source, const Variant& variant, const std::vector<const Measurement*>& runs) {
@@ -110,7 +111,7 @@ AblationRow row_of(const std::string& source, const Variant& variant, const std:
 bool unlike(const std::vector<const Measurement*>& runs) {
   std::vector<std::string> trajectories;
   for (const Measurement* run : runs) {
-    if (run->failure.empty()) trajectories.push_back(io::read_text(run->trajectory).value_or(""));
+    if (run->failure.empty()) trajectories.push_back(io::try_read_file(run->trajectory, io::kPoses).value_or(""));
   }
   return std::ranges::any_of(trajectories, [&](const auto& t) { return t != trajectories[0]; });
 }

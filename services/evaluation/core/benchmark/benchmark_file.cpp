@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
-#include "common/io/text.hpp"
+#include "common/io/input_file.hpp"
 #include "common/service/config.hpp"
 #include "services/evaluation/core/benchmark/benchmark.hpp"
 
@@ -73,7 +73,7 @@ Json benchmark_json(const Benchmark& benchmark) {
 }
 
 Benchmark read_benchmark(const std::string& file) {
-  const auto text = io::read_text(file);
+  const auto text = io::try_read_file(file, io::kResults);
   if (!text) throw service::ConfigError(file + " cannot be read");
   const nlohmann::json json = nlohmann::json::parse(*text, nullptr, false);
   if (!json.is_object() || json.value("format", nlohmann::json()) != kFormat)

@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <optional>
 #include <set>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/fd_writing.hpp"
+#include "common/io/folder_walk.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
 #include "services/evaluation/core/benchmark/dataset.hpp"
@@ -34,7 +39,12 @@ bool holds_lists(const fs::path& folder, const Layout& layout) {
 /// The images that a list "stamp file" names.
 std::vector<std::string> listed_images(const fs::path& list) {
   std::vector<std::string> images;
-  for (const io::TextLine& line : io::split_lines(io::read_text(list).value_or(""))) {
+  std::string text;
+  try {
+    text = io::read_file(list, io::kFrameList, list.parent_path());
+  } catch (const io::IoError&) {  // names no image
+  }
+  for (const io::TextLine& line : io::split_lines(text)) {
     if (line.fields.size() >= 2) images.push_back(line.fields[1]);
   }
   return images;
@@ -44,8 +54,9 @@ std::vector<std::string> listed_images(const fs::path& list) {
 std::string missing_images(const fs::path& folder, const char* list) {
   const std::vector<std::string> images = listed_images(folder / list);
   if (images.empty()) return fmt::format("{} names no image: the download is incomplete, unpack it again", list);
-  std::error_code ignored;
-  const auto is_missing = [&](const std::string& image) { return !fs::exists(folder / image, ignored); };
+  const auto is_missing = [&](const std::string& image) {
+    return io::Descriptor(io::open_below(folder / image, folder, O_PATH | O_CLOEXEC)).get() < 0;
+  };
   const auto first = std::ranges::find_if(images, is_missing);
   if (first == images.end()) return "";
   return fmt::format("{} of {} images of {} are missing (the first is {}): the download is incomplete, unpack it again",
@@ -96,9 +107,10 @@ class Search {
  public:
   explicit Search(Dataset dataset) : dataset_(dataset), layout_(layout_of(dataset)) {}
 
-  /// Links to folders are followed, so the depth is limited.
+  /// Each folder once, also where links lead to it again.
   void visit(const fs::path& folder, int depth = 0) {
     constexpr int kDeepest = 5;
+    if (!walk_.enter(folder)) return;
     if (holds_any_lists(folder)) return judge(folder);
     const std::size_t before = found_.sequences.size() + found_.left_out.size();
     if (depth < kDeepest) visit_below(folder, depth);
@@ -124,17 +136,11 @@ class Search {
   }
 
   void visit_below(const fs::path& folder, int depth) {
-    std::vector<fs::path> folders;
-    std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-      const std::string name = entry.path().filename().string();
-      std::error_code ignored;
-      if (entry.is_directory(ignored) && !name.starts_with('.')) folders.push_back(entry.path());
-      if (const std::string packed = packed_name(name); !sequence_name(dataset_, packed).empty())
-        packed_.emplace_back(packed, entry.path());
+    for (const io::FolderEntry& entry : walk_.entries(folder)) {
+      if (const std::string packed = packed_name(entry.name); !sequence_name(dataset_, packed).empty())
+        packed_.emplace_back(packed, folder / entry.name);
+      if (entry.is_folder && !entry.name.starts_with('.')) visit(folder / entry.name, depth + 1);
     }
-    std::ranges::sort(folders);
-    for (const fs::path& below : folders) visit(below, depth + 1);
   }
 
   void judge(const fs::path& folder) {
@@ -157,6 +163,7 @@ class Search {
 
   const Dataset dataset_;
   const Layout layout_;
+  io::FolderWalk walk_;
   FoundSequences found_;
   std::set<std::string> seen_;
   std::vector<std::pair<std::string, fs::path>> packed_;

@@ -13,6 +13,8 @@
 #include "common/camera/frame_source.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 
 namespace rtd::eval {
@@ -23,10 +25,20 @@ using camera::SourceError;
 
 constexpr const char* kColorFrame = "d400_color_optical_frame";
 
+/// A file of a sequence, which links do not lead out of. Throws SourceError.
+std::string read_below(const fs::path& file, const io::ReadAs& as) {
+  try {
+    return io::read_file(file, as, file.parent_path());
+  } catch (const io::IoError& error) {
+    throw SourceError(error.what());
+  }
+}
+
 /// A file of OpenCV's YAML. Throws SourceError.
 cv::FileStorage open_yaml(const fs::path& file) {
+  const std::string text = read_below(file, io::kSettings);
   try {
-    cv::FileStorage yaml(file.string(), cv::FileStorage::READ);
+    cv::FileStorage yaml(text, cv::FileStorage::READ | cv::FileStorage::MEMORY);
     if (yaml.isOpened()) return yaml;
   } catch (const cv::Exception&) {
   }
@@ -105,7 +117,7 @@ struct Groundtruth {
 Groundtruth read_groundtruth(const fs::path& file) {
   Groundtruth truth;
   std::string rows;
-  for (const io::TextLine& line : io::split_lines(io::read_text(file).value_or(""))) {
+  for (const io::TextLine& line : io::split_lines(read_below(file, io::kPoses))) {
     if (line.fields[0] == "frame:") truth.body = line.fields.back();
     if (!io::parse_number(line.fields[0])) continue;
     for (const std::string& field : line.fields) rows += field + ' ';
@@ -136,9 +148,7 @@ geometry::Trajectory of_camera(const fs::path& sequence) {
 }
 
 void copy_list(const fs::path& from, const fs::path& to) {
-  const std::optional<std::string> text = io::read_text(from);
-  if (!text) throw SourceError("cannot read " + from.string());
-  io::write_file(to, *text);
+  io::write_file(to, read_below(from, io::kFrameList));
 }
 
 /// A link may be left from an earlier call.

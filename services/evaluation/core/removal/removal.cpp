@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "common/camera/source_factory.hpp"
+#include "common/io/folder_walk.hpp"
 #include "common/io/text.hpp"
 #include "common/vision/image_codecs.hpp"
 
@@ -35,9 +36,9 @@ using MaskOf = std::function<std::optional<cv::Mat>(std::int64_t stamp_ns)>;
 
 MaskOf masks_of_folder(const fs::path& folder) {
   std::map<std::int64_t, std::string> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+  for (const fs::path& file : io::FolderWalk().paths(folder)) {
     try {
-      files[io::parse_stamp_ns(entry.path().stem().string())] = entry.path().string();
+      files[io::parse_stamp_ns(file.stem().string())] = file.string();
     } catch (const std::invalid_argument&) {
       continue;  // not named by a stamp: not a mask
     }

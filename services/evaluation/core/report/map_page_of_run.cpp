@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <fstream>
 
+#include "common/io/input_file.hpp"
+#include "common/io/text.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
 namespace rtd::eval {
@@ -39,7 +40,7 @@ Layer read_static_map(std::istream& in) {
       "property uchar green\nproperty uchar blue\nproperty float weight\n";
   std::string properties, text, format;
   std::size_t count = 0;
-  while (std::getline(in, text) && text != "end_header") {
+  while (io::get_line(in, text) && text != "end_header") {
     if (text.starts_with("property ")) properties += text + '\n';
     if (text.starts_with("format ")) format = text;
     if (text.starts_with("element vertex ")) count = std::strtoull(text.c_str() + 15, nullptr, 10);
@@ -58,7 +59,7 @@ map_page::Page map_page_of(const Run& run, const RunSummary& summary) {
   page.facts = {{"Frames", summary.frames.text()}, {"Keyframes", std::to_string(summary.keyframes)}};
   if (summary.final_trajectory && summary.final_trajectory->ate.error_m.count > 0)
     page.facts.emplace_back("ATE", length_text(summary.final_trajectory->ate.error_m.rmse));
-  if (std::ifstream file(run.static_map_path, std::ios::binary); file) page.layers.push_back(read_static_map(file));
+  if (const auto file = io::try_open(run.static_map_path)) page.layers.push_back(read_static_map(*file));
   Layer landmarks{.name = "Landmarks", .shown = page.layers.empty(), .color = kLandmark};
   for (const Eigen::Vector3d& landmark : run.landmarks_m) landmarks.points_m.push_back(landmark.cast<float>());
   page.layers.push_back(std::move(landmarks));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "common/io/text.hpp"
 #include "services/evaluation/core/plot/chart.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 
@@ -37,7 +38,7 @@ std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most) 
   std::string line;
   std::size_t count = 0;
   bool is_text = false, in_header = true;
-  while (in_header && std::getline(in, line)) {
+  while (in_header && io::get_line(in, line)) {
     std::istringstream words(line);
     std::string key, what;
     words >> key >> what;
@@ -48,7 +49,7 @@ std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most) 
   std::vector<Eigen::Vector3d> points_m;
   if (in_header || !is_text) return points_m;
   const std::size_t stride = count / std::max<std::size_t>(1, most) + 1;
-  for (std::size_t i = 0; i < count && std::getline(in, line); ++i) {
+  for (std::size_t i = 0; i < count && io::get_line(in, line); ++i) {
     Eigen::Vector3d p;
     if (i % stride != 0 || !(std::istringstream(line) >> p.x() >> p.y() >> p.z())) continue;
     if (p.allFinite()) points_m.push_back(p);

@@ -5,12 +5,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "common/geometry/ply.hpp"
 #include "common/io/atomic_file.hpp"
+#include "common/io/input_file.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/map_page_of_run.hpp"
@@ -166,9 +166,10 @@ Run load_run(const std::string& folder) {
   run.groundtruth_path = existing(folder + "/groundtruth.txt");
   run.trajectory_path = existing(folder + "/trajectory.txt");
   run.static_map_path = existing(folder + "/static_map.ply");
-  if (std::ifstream map(run.static_map_path); map) run.static_map_points = geometry::ply_vertices(map).value_or(0);
-  std::ifstream landmarks(folder + "/map.ply");
-  run.landmarks_m = read_landmarks(landmarks, kDrawnLandmarks);
+  if (const auto map = io::try_open(run.static_map_path))
+    run.static_map_points = geometry::ply_vertices(*map).value_or(0);
+  if (const auto landmarks = io::try_open(folder + "/map.ply"))
+    run.landmarks_m = read_landmarks(*landmarks, kDrawnLandmarks);
   return run;
 }
 

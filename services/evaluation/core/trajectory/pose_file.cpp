@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -256,7 +255,7 @@ std::vector<std::int64_t> stamps_for(std::size_t poses, const MissingStamps& giv
 PoseFile read_text_file(const fs::path& path, const MissingStamps& stamps) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   const std::string name = path.string();
-  std::string text = fs::is_regular_file(path) ? io::read_text(path).value_or("") : "";
+  std::string text = geometry::read_poses_text(path);
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
   const PoseFormat format = format_of(text);
   if (format == PoseFormat::kEuroc) return read_euroc(text, name);
@@ -267,8 +266,7 @@ PoseFile read_text_file(const fs::path& path, const MissingStamps& stamps) {
     file.numbered = !file.took_stamps;
     return file;
   }
-  // says what is wrong with a file that cannot be read
-  geometry::PoseList list = text.empty() ? geometry::read_pose_list(path) : geometry::read_pose_list(text, name);
+  geometry::PoseList list = geometry::read_pose_list(text, name);
   file.poses = std::move(list.poses);
   file.notes = std::move(list.notes);
   file.damages = std::move(list.damages);

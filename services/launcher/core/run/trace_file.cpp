@@ -3,11 +3,12 @@
 #include "services/launcher/core/run/trace_file.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 #include <set>
 
 #include "common/io/atomic_file.hpp"
+#include "common/io/input_file.hpp"
+#include "common/io/text.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -19,8 +20,8 @@ void join_parts(const std::set<fs::path>& parts, std::ostream& joined) {
   joined << R"({"displayTimeUnit":"ms","traceEvents":[)";
   const char* separator = "\n";
   for (const fs::path& part : parts) {
-    std::ifstream lines(part);
-    for (std::string line; std::getline(lines, line);) {
+    io::InputStream lines(part);
+    for (std::string line; io::get_line(lines, line);) {
       if (!line.ends_with("}}")) continue;
       joined << separator << line;
       separator = ",\n";
@@ -37,8 +38,8 @@ std::string join_trace(const std::string& folder, const std::string& path) {
   for (const auto& entry : fs::directory_iterator(folder, error)) parts.insert(entry.path());
   if (error) return folder + ": " + error.message();
   try {
-    io::write_file(
-        path, [&](std::ostream& joined) { join_parts(parts, joined); }, {.named_by = io::NamedBy::kOperator});
+    io::write_file(path, [&](std::ostream& joined) { join_parts(parts, joined); },
+                   {.named_by = io::NamedBy::kOperator});
   } catch (const io::IoError& failure) {
     return failure.what();
   }

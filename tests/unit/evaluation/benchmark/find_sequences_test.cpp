@@ -42,6 +42,25 @@ TEST(FindSequences, finds_them_by_name_at_any_depth_also_through_links) {
   EXPECT_THAT(found.left_out, IsEmpty());
 }
 
+TEST(FindSequences, looks_at_a_folder_once_whatever_links_lead_to_it) {
+  const DatasetFolder data;
+  data.add_tum("a/rgbd_bonn_crowd");
+  for (int i = 0; i < 64; ++i) fs::create_directory_symlink(".", data.path() / "a" / ("d" + std::to_string(i)));
+  const FoundSequences found = find_sequences(Dataset::kBonn, {data.path().string()});
+  EXPECT_EQ(found.sequences.size(), 1U);
+  EXPECT_THAT(found.left_out, IsEmpty());
+}
+
+TEST(FindSequences, images_elsewhere_are_not_there) {
+  const DatasetFolder data;
+  data.add_tum("rgbd_bonn_crowd");
+  data.add_tum("rgbd_bonn_balloon");
+  data.write("rgbd_bonn_crowd/rgb.txt", "1.0 ../rgbd_bonn_balloon/rgb/1.png\n2.0 rgb/2.png\n");
+  const FoundSequences found = find_sequences(Dataset::kBonn, {data.path().string()});
+  EXPECT_EQ(found.sequences.size(), 1U);
+  EXPECT_THAT(found.left_out, ElementsAre(is_left_out("rgbd_bonn_crowd", "1 of 2 images of rgb.txt are missing")));
+}
+
 TEST(FindSequences, takes_a_sequence_that_is_named_itself) {
   const DatasetFolder data;
   data.add_tum("rgbd_bonn_crowd");

@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+// What a folder of somebody else may hold in place of lists, images, calibrations and true poses.
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <functional>
+
+#include "common/camera/source_factory.hpp"
+#include "tests/unit/camera/played_frames.hpp"
+#include "tests/unit/camera/sequence_folder.hpp"
+
+namespace rtd::camera {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+using SequenceFolder = test::SequenceFolder;
+
+/// Something in place of a file, and the cause that is named.
+struct Odd {
+  std::string name, cause;
+  std::function<void(const fs::path&)> make;
+};
+
+class StrangersSequence : public ::testing::TestWithParam<Odd> {
+ protected:
+  StrangersSequence() { folder_.three_frames(); }
+
+  void replace(const std::string& file) const {
+    fs::remove(folder_.path() / file);
+    GetParam().make(folder_.path() / file);
+  }
+  void refuses(const std::string& file) const {
+    EXPECT_THAT([&] { make_source(folder_.uri()); },
+                ThrowsMessage<SourceError>(AllOf(HasSubstr(file), HasSubstr(GetParam().cause))));
+  }
+
+  const SequenceFolder folder_;
+};
+
+TEST_P(StrangersSequence, is_refused_with_the_cause_for_its_lists) {
+  replace("depth.txt");
+  refuses("depth.txt");
+}
+
+TEST_P(StrangersSequence, is_refused_with_the_cause_for_its_calibration) {
+  replace("calibration.yaml");
+  refuses("calibration.yaml");
+}
+
+TEST_P(StrangersSequence, plays_without_its_true_poses_and_says_why) {
+  replace("groundtruth.txt");
+  const auto source = make_source(folder_.uri());
+  EXPECT_THAT(source->info().remarks, Contains(AllOf(HasSubstr("ground truth not used"), HasSubstr(GetParam().cause))));
+}
+
+TEST_P(StrangersSequence, plays_without_an_image_and_says_why) {
+  replace("rgb/1.1.png");
+  replace("depth/1.2.png");
+  const auto played = test::play_all(folder_.uri());
+  EXPECT_THAT(played.frames, SizeIs(1));
+  ASSERT_THAT(played.skipped, SizeIs(2));
+  EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("1.1.png"), HasSubstr(GetParam().cause)));
+  EXPECT_THAT(played.skipped[1].detail, AllOf(HasSubstr("1.2.png"), HasSubstr(GetParam().cause)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, StrangersSequence,
+                         testing::Values(Odd{"pipe", "is a pipe, not a regular file",
+                                             [](const fs::path& file) { ASSERT_EQ(mkfifo(file.c_str(), 0600), 0); }},
+                                         Odd{"device", "leads out of the folder",
+                                             [](const fs::path& file) { fs::create_symlink("/dev/zero", file); }},
+                                         Odd{"folder", "this is a folder",
+                                             [](const fs::path& file) { fs::create_directory(file); }},
+                                         Odd{"sparse", "has 30 GB",
+                                             [](const fs::path& file) {
+                                               std::ofstream{file};
+                                               fs::resize_file(file, 30'000'000'000);
+                                             }}),
+                         [](const testing::TestParamInfo<Odd>& odd) { return odd.param.name; });
+
+class OutsideTheFolder : public ::testing::Test {
+ protected:
+  OutsideTheFolder() { folder_.three_frames(); }
+
+  std::string problem(const std::string& parameters = "") const {
+    try {
+      make_source(folder_.uri() + parameters);
+    } catch (const SourceError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const SequenceFolder folder_, other_;
+};
+
+TEST_F(OutsideTheFolder, no_image_of_a_list_may_lie_and_whether_it_is_there_is_not_said) {
+  other_.three_frames();
+  const std::string there = (other_.path() / "rgb/1.0.png").string(), missing = (other_.path() / "none.png").string();
+  for (const std::string& image : {there, missing, std::string("/etc/passwd"), std::string("../../../etc/passwd"),
+                                   std::string("rgb/../../none.png")}) {
+    folder_.write("rgb.txt", "1.0 rgb/1.0.png\n1.1 " + image + "\n");
+    EXPECT_EQ(problem(), folder_.path().string() + "/rgb.txt:2: '" + image +
+                             "' does not lie below the folder of the list; add ?outside=1 to the source to use it all "
+                             "the same");
+    folder_.write("associations.txt", "1.0 rgb/1.0.png 1.0 depth/1.0.png\n1.1 rgb/1.1.png 1.1 " + image + "\n");
+    EXPECT_THAT(problem(), HasSubstr("associations.txt:2: '" + image + "' does not lie below"));
+    fs::remove(folder_.path() / "associations.txt");
+  }
+  folder_.write("rgb.txt", "1.0 rgb/1.0.png\n1.1 " + there + "\n");
+  EXPECT_THAT(test::play(folder_.uri() + "?outside=1"), SizeIs(2));
+}
+
+TEST_F(OutsideTheFolder, no_link_is_followed_unless_the_user_says_so) {
+  other_.three_frames();
+  for (const std::string& image : {std::string("1.0.png"), std::string("none.png")}) {
+    fs::remove(folder_.path() / "rgb/1.1.png");
+    fs::create_symlink(other_.path() / "rgb" / image, folder_.path() / "rgb/1.1.png");
+    const auto played = test::play_all(folder_.uri());
+    EXPECT_THAT(played.frames, SizeIs(2));
+    ASSERT_THAT(played.skipped, SizeIs(1));
+    EXPECT_THAT(played.skipped[0].detail, AllOf(HasSubstr("leads out of the folder"), HasSubstr("?outside=1")));
+  }
+  fs::remove_all(folder_.path() / "rgb");
+  fs::create_symlink(other_.path() / "rgb", folder_.path() / "rgb");
+  EXPECT_THAT(problem(), AllOf(HasSubstr("no usable frame"), HasSubstr("?outside=1")));
+  for (const char* list : {"rgb.txt", "depth.txt"}) fs::remove(folder_.path() / list);
+  EXPECT_THAT(problem(), AllOf(HasSubstr("rgb is a link that leads out of it"), HasSubstr("?outside=1")));
+  EXPECT_THAT(test::play(folder_.uri() + "?outside=1"), SizeIs(3));
+}
+
+TEST(ManyFolders, links_in_a_circle_end_at_once) {
+  const SequenceFolder folder;
+  fs::remove_all(folder.path() / "rgb");
+  fs::remove_all(folder.path() / "depth");
+  for (int i = 0; i < 64; ++i) fs::create_symlink(".", folder.path() / ("d" + std::to_string(i)));
+  EXPECT_THAT([&] { make_source(folder.uri()); }, ThrowsMessage<SourceError>(HasSubstr("has no colour and depth")));
+}
+
+TEST(ManyFolders, are_looked_at_up_to_a_bound) {
+  const SequenceFolder folder;
+  for (int i = 0; i < 2100; ++i)
+    fs::create_directories(folder.path() / ("a" + std::to_string(i % 50)) / std::to_string(i));
+  EXPECT_THAT(
+      [&] { make_source(folder.uri()); },
+      ThrowsMessage<SourceError>(AllOf(HasSubstr("more than 2000"), HasSubstr("name the one with the sequence"))));
+}
+
+}  // namespace
+}  // namespace rtd::camera
