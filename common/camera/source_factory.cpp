@@ -81,7 +81,8 @@ namespace {
 
 /// Lists of the form that tum: is named after.
 bool has_tum_lists(const std::filesystem::path& folder) {
-  const auto has = [&](const char* list) { return std::filesystem::exists(folder / list); };
+  std::error_code none;
+  const auto has = [&](const char* list) { return std::filesystem::exists(folder / list, none); };
   return has("associations.txt") || (has("rgb.txt") && has("depth.txt"));
 }
 
@@ -96,7 +97,7 @@ std::string complete_uri(const std::string& source) {
   const std::filesystem::path path = source.substr(0, source.find('?'));
   const bool has_scheme = path.string().find(':') != std::string::npos;
   if (has_scheme || !advice_for_file(path).empty()) return source;
-  if (std::filesystem::is_directory(path)) return folder_scheme(path) + source;
+  if (std::error_code none; std::filesystem::is_directory(path, none)) return folder_scheme(path) + source;
   if (io::is_packed_name(path)) return "mcap:" + source;
   const std::string extension = path.extension();
   if (extension.empty()) return source;
@@ -152,7 +153,8 @@ RecordingOptions recording_options(const SourceUri& uri) {
 /// Bags and databases are read where they lie; all else, also folders and packed ones of these, as MCAP.
 std::unique_ptr<recordings::Reader> open_file(const SourceUri& uri) {
   using recordings::Form;
-  const bool lies_there = !std::filesystem::is_directory(uri.path) && !io::is_packed_name(uri.path);
+  std::error_code none;
+  const bool lies_there = !std::filesystem::is_directory(uri.path, none) && !io::is_packed_name(uri.path);
   const Form form = uri.scheme == "bag" ? Form::kBag : uri.scheme == "db3" ? Form::kDb3 : Form::kMcap;
   try {
     return recordings::open_reader(uri.path, lies_there ? form : Form::kMcap);

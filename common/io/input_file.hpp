@@ -24,7 +24,7 @@ struct ReadAs {
 };
 
 inline constexpr std::uint64_t kMegabyte = 1'000'000;
-inline constexpr ReadAs kFrameList{"a list of frames", 64 * kMegabyte};
+inline constexpr ReadAs kFrameList{"a list of frames", 32 * kMegabyte};
 inline constexpr ReadAs kImage{"an image", 128 * kMegabyte};
 inline constexpr ReadAs kCalibration{"a calibration", 16 * kMegabyte};
 inline constexpr ReadAs kPoses{"a list of poses", 256 * kMegabyte};

@@ -125,7 +125,7 @@ Parts parts_by_metadata(const fs::path& folder) {
 Parts parts_of(const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return {{path}, {}, false};
-  if (fs::exists(path / kMetadata)) return parts_by_metadata(path);
+  if (fs::exists(path / kMetadata, error)) return parts_by_metadata(path);
   Parts parts;
   try {
     parts.files = recordings_in(path);
@@ -150,8 +150,9 @@ Parts parts_of(const fs::path& path) {
 }
 
 bool holds_recording(const fs::path& folder) {
+  std::error_code none;
   try {
-    return fs::exists(folder / kMetadata) || !recordings_in(folder).empty();
+    return fs::exists(folder / kMetadata, none) || !recordings_in(folder).empty();
   } catch (const io::IoError&) {
     return false;
   }

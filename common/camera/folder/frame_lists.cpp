@@ -44,8 +44,14 @@ std::optional<std::int64_t> stamp_of(const std::string& text, const std::string&
   }
 }
 
-SkippedInput malformed(const fs::path& file, const io::TextLine& line, const std::string& expected) {
-  return {SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"};
+/// Leaves a line out. Throws SourceError when it is one of so many that the file is no list.
+void leave_out(std::vector<SkippedInput>& skipped, const fs::path& file, const io::TextLine& line,
+               const std::string& expected) {
+  constexpr std::size_t kMost = 10'000;
+  skipped.push_back({SkipReason::kMalformedLine, at_line(file, line.number) + ": expected '" + expected + "'"});
+  if (skipped.size() > kMost)
+    throw SourceError(file.string() + ": more than " + std::to_string(kMost) + " lines are not '" + expected +
+                      "': it is not a list of frames");
 }
 
 /// Throws SourceError for an image that does not lie below the folder of its list, as far as its name says so. Whether
@@ -80,7 +86,7 @@ std::vector<StampedFile> read_list(const fs::path& file, const ListRules& rules,
       entries.push_back({*stamp_ns, joined_words(std::span(columns).subspan(1))});
       if (!rules.outside) require_inside(entries.back(), at_line(file, line.number));
     } else {
-      skipped.push_back(malformed(file, line, "stamp file"));
+      leave_out(skipped, file, line, "stamp file");
     }
   }
   return entries;
@@ -110,7 +116,7 @@ std::vector<FilePair> read_four_columns(const fs::path& file, const ListRules& r
       for (const StampedFile& entry : {pairs.back().color, pairs.back().depth})
         if (!rules.outside) require_inside(entry, where);
     } else {
-      skipped.push_back(malformed(file, line, "stamp rgb_file stamp depth_file"));
+      leave_out(skipped, file, line, "stamp rgb_file stamp depth_file");
     }
   }
   return pairs;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-// What a folder of somebody else may hold in place of lists, images, calibrations and true poses.
+// What a folder of another person may hold in place of lists, images, calibrations and true poses.
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 

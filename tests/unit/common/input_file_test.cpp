@@ -20,7 +20,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A folder of somebody else with a file "in/there.txt", and beside it a file "secret.txt".
+/// A folder of another person with a file "in/there.txt", and beside it a file "secret.txt".
 class StrangersFolder : public ::testing::Test {
  protected:
   StrangersFolder() {

@@ -219,7 +219,8 @@ struct PoseArgument {
 };
 
 PoseArgument parse(const std::string& text) {
-  if (fs::exists(text)) return {text, {}, false};
+  std::error_code none;
+  if (fs::exists(text, none)) return {text, {}, false};
   const std::size_t question = text.find('?');
   if (question == std::string::npos) return {text, {}, false};
   PoseArgument argument{text.substr(0, question), {}, true};
@@ -237,7 +238,7 @@ PoseArgument parse(const std::string& text) {
 
 bool is_recording(const fs::path& file) {
   try {
-    if (fs::is_directory(file)) return recordings::holds_recording(file);
+    if (std::error_code none; fs::is_directory(file, none)) return recordings::holds_recording(file);
     return recordings::is_recording(file.string()) || io::is_recording_name(file);
   } catch (const mcap::RecordingFileError&) {
     return false;  // read_text_file() says why it cannot be read
@@ -287,7 +288,9 @@ PoseFile read_results_file(recordings::Reader& recording, const std::string& top
 
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps) {
   const PoseArgument wanted = parse(argument);
-  if (fs::exists(wanted.file) && is_recording(wanted.file)) {
+  std::error_code none;
+  const bool exists = fs::exists(wanted.file, none);
+  if (exists && is_recording(wanted.file)) {
     const auto reader = recordings::open_reader(wanted.file);
     if (const auto results = topic_of_results(*reader, wanted.choice)) return read_results_file(*reader, *results);
     RecordedPoses recorded = read_recorded_poses(*reader, wanted.choice);
@@ -296,7 +299,7 @@ PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps
     file.damages = std::move(recorded.damages);
     return file;
   }
-  if (wanted.chosen && fs::exists(wanted.file))
+  if (wanted.chosen && exists)
     throw TrajectoryError(argument + ": topic and child are for recordings (bag, MCAP, .db3), the file is none");
   return read_text_file(wanted.file, stamps);
 }
