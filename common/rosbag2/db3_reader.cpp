@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <map>
 #include <set>
 #include <tuple>
@@ -25,14 +26,15 @@ constexpr std::uint64_t kRowBytes = 8;            // at least
 constexpr std::size_t kMostDescribed = 16 << 20;  // of definitions: topics of one type have copies of it
 constexpr int kStepInstructions = 1000;           // of SQLite's machine between two calls of the progress handler
 
-std::uint64_t size_of(const fs::path& path) {
-  std::error_code none;
-  const auto size = fs::file_size(path, none);
-  return none ? 0 : size;
-}
-
-fs::path beside(const fs::path& path, const char* suffix) {
-  return path.string() + suffix;
+/// Bytes of a file beside a database; 0: there is none. Throws Db3Error for what is not a regular file, which SQLite
+/// would wait for.
+std::uint64_t size_beside(const fs::path& path, const char* suffix) {
+  try {
+    return io::FileSource(path.string() + suffix, io::Links::kRefuse).size();
+  } catch (const io::IoError& error) {
+    if (error.code().value() == ENOENT) return 0;
+    throw Db3Error(error.what());
+  }
 }
 
 /// Without a log beside it the file is complete in itself: "immutable" reads it without locks, so also in a folder that
@@ -46,7 +48,8 @@ std::string uri_of(const fs::path& path) {
       uri += c;
     }
   }
-  const bool complete = size_of(beside(path, "-wal")) == 0 && size_of(beside(path, "-journal")) == 0;
+  bool complete = true;
+  for (const char* suffix : {"-wal", "-journal"}) complete = size_beside(path, suffix) == 0 && complete;
   return uri + (complete ? "?mode=ro&immutable=1" : "?mode=ro");
 }
 
@@ -110,7 +113,7 @@ void Db3Reader::fail(const std::string& what) const {
 
 void Db3Reader::open() {
   try {
-    bytes_ = io::FileSource(path_).size() + size_of(beside(path_, "-wal"));
+    bytes_ = io::FileSource(path_).size() + size_beside(path_, "-wal");
   } catch (const io::IoError& error) {
     throw Db3Error(error.what());
   }

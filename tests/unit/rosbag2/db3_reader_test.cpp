@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <sqlite3.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -117,6 +118,10 @@ TEST_F(Db3ReaderTest, refuses_files_that_are_no_recording) {
   EXPECT_THAT(open(written("")), ThrowsMessage<Db3Error>(HasSubstr("empty")));
   EXPECT_THAT(open(written(std::string(5000, 'x'))), ThrowsMessage<Db3Error>(HasSubstr("not a database")));
   EXPECT_THAT(open(closed("CREATE TABLE t(a)")), ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));
+  const fs::path whole = closed("CREATE TABLE t(a)");
+  std::ofstream(whole.string() + "-wal") << "log";
+  ASSERT_EQ(mkfifo((whole.string() + "-journal").c_str(), 0600), 0);
+  EXPECT_THAT(open(whole), ThrowsMessage<Db3Error>(HasSubstr("-journal: is a pipe"))) << "SQLite would wait for it";
 }
 
 TEST_F(Db3ReaderTest, refuses_a_view_in_place_of_the_messages) {
