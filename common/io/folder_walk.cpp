@@ -28,6 +28,12 @@ std::optional<struct stat> status_of(const Descriptor& file) {
 }  // namespace
 
 const std::vector<FolderEntry>& FolderWalk::entries(const fs::path& folder) {
+  const std::vector<FolderEntry>*& listed = by_name_[folder.native()];
+  if (listed == nullptr) listed = &read_once(folder);
+  return *listed;
+}
+
+const std::vector<FolderEntry>& FolderWalk::read_once(const fs::path& folder) {
   static const std::vector<FolderEntry> kNone;
   const Descriptor opened(open_below(folder, below_, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   const auto status = status_of(opened);

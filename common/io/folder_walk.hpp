@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,7 @@ class FolderWalk {
  private:
   using Id = std::pair<std::uint64_t, std::uint64_t>;  ///< device and inode
 
+  const std::vector<FolderEntry>& read_once(const std::filesystem::path& folder);
   std::vector<FolderEntry> read(const std::filesystem::path& folder, int fd);
   bool leads_to_folder(const std::filesystem::path& link);
 
@@ -51,6 +53,7 @@ class FolderWalk {
   std::uint64_t seen_ = 0;
   std::filesystem::path led_out_;
   std::map<Id, std::vector<FolderEntry>> folders_;
+  std::unordered_map<std::string, const std::vector<FolderEntry>*> by_name_;
   std::set<Id> entered_;
 };
 

@@ -243,7 +243,7 @@ class Search {
   std::vector<FolderContents> found;
 
  private:
-  static constexpr int kMostFolders = 2000;
+  static constexpr int kMostFolders = 1000;
   io::FolderWalk& walk_;
   int looked_at_ = 0;
 };

@@ -144,11 +144,11 @@ TEST(ManyFolders, links_in_a_circle_end_at_once) {
 
 TEST(ManyFolders, are_looked_at_up_to_a_bound) {
   const SequenceFolder folder;
-  for (int i = 0; i < 2100; ++i)
+  for (int i = 0; i < 1100; ++i)
     fs::create_directories(folder.path() / ("a" + std::to_string(i % 50)) / std::to_string(i));
   EXPECT_THAT(
       [&] { make_source(folder.uri()); },
-      ThrowsMessage<SourceError>(AllOf(HasSubstr("more than 2000"), HasSubstr("name the one with the sequence"))));
+      ThrowsMessage<SourceError>(AllOf(HasSubstr("more than 1000"), HasSubstr("name the one with the sequence"))));
 }
 
 }  // namespace
