@@ -3,10 +3,7 @@
 #include "common/security/keystore_layout.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <sstream>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"

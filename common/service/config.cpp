@@ -10,9 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <functional>
-#include <iterator>
 #include <limits>
 
 #include "common/io/byte_sink.hpp"
