@@ -117,8 +117,8 @@ TEST_F(Db3ReaderTest, refuses_files_that_are_no_recording) {
   EXPECT_THAT(open(folder_ / "none.db3"), ThrowsMessage<Db3Error>(HasSubstr("No such file")));
   EXPECT_THAT(open(written("")), ThrowsMessage<Db3Error>(HasSubstr("empty")));
   EXPECT_THAT(open(written(std::string(5000, 'x'))), ThrowsMessage<Db3Error>(HasSubstr("not a database")));
-  EXPECT_THAT(open(closed("CREATE TABLE t(a)")), ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));
   const fs::path whole = closed("CREATE TABLE t(a)");
+  EXPECT_THAT(open(whole), ThrowsMessage<Db3Error>(HasSubstr("lacks the table")));
   std::ofstream(whole.string() + "-wal") << "log";
   ASSERT_EQ(mkfifo((whole.string() + "-journal").c_str(), 0600), 0);
   EXPECT_THAT(open(whole), ThrowsMessage<Db3Error>(HasSubstr("-journal: is a pipe"))) << "SQLite would wait for it";
