@@ -54,6 +54,10 @@ StatusCallbacks TopicCounters::count(const std::string& topic, StatusCallbacks c
       events(&TopicTrouble::incompatible_qos, &TopicTrouble::policy, callbacks.on_incompatible_qos);
   counted.on_type_mismatch =
       events(&TopicTrouble::type_mismatch, &TopicTrouble::other_type, callbacks.on_type_mismatch);
+  counted.on_too_large = [note, next = std::move(callbacks.on_too_large)] {
+    note([](TopicTrouble& trouble) { ++trouble.too_large; });
+    if (next) next();
+  };
   return counted;
 }
 

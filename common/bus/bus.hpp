@@ -94,6 +94,7 @@ struct TopicTrouble {
   std::string other_type;              ///< of the last mismatch
   std::uint64_t implausible = 0;       ///< messages refused for their content (common/msg/plausible.hpp)
   std::string implausible_field;       ///< of the last message refused, e.g. "rtd_msgs/Feature.octave"
+  std::uint64_t too_large = 0;         ///< own messages that were not sent (common/msg/largest_sample.hpp)
   friend bool operator==(const TopicTrouble&, const TopicTrouble&) = default;
 };
 

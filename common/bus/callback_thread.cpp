@@ -57,7 +57,7 @@ void CallbackThread::loop() {
 
 StatusReporter::StatusReporter(StatusCallbacks callbacks) : callbacks_(std::move(callbacks)) {
   if (callbacks_.on_matched || callbacks_.on_incompatible_qos || callbacks_.on_deadline_missed ||
-      callbacks_.on_type_mismatch)
+      callbacks_.on_type_mismatch || callbacks_.on_too_large)
     thread_ = &own_.emplace();
 }
 

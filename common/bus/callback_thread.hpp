@@ -65,6 +65,7 @@ class StatusReporter {
   void report_writer(const WriterId& writer, bool matched) { post(callbacks_.on_writer, writer, matched); }
   void report_lost(int total) { post(callbacks_.on_samples_lost, total); }
   void report_rejected(int total) { post(callbacks_.on_samples_rejected, total); }
+  void report_too_large() { post(callbacks_.on_too_large); }
 
  private:
   template <class Callback, class... Values>

@@ -43,7 +43,7 @@ struct MessageMemory {
 };
 
 /// Lends uninitialised messages as shared pointers and takes their memory back: a fresh frame would cost 375 page
-/// faults. Messages may outlive the pool. Thread-safe.
+/// faults. What grew larger than any of ours is given back. Messages may outlive the pool. Thread-safe.
 template <class T>
 class MessagePool {
  public:
@@ -55,6 +55,12 @@ class MessagePool {
  private:
   using Owned = std::unique_ptr<T, MessageMemory<T>>;
   static constexpr std::size_t kMaxSpares = 8;
+  static constexpr std::size_t kLargestSpare = 12U << 20U;  // bytes: a frame
+
+  static bool is_worth_keeping(const T& message) {
+    if constexpr (requires { message.capacity(); }) return message.capacity() <= kLargestSpare;
+    return true;
+  }
 
   class Spares {
    public:
@@ -67,7 +73,7 @@ class MessagePool {
     }
     void push(Owned message) {
       const std::lock_guard lock(mutex_);
-      if (messages_.size() < kMaxSpares) messages_.push_back(std::move(message));
+      if (messages_.size() < kMaxSpares && is_worth_keeping(*message)) messages_.push_back(std::move(message));
     }
 
    private:

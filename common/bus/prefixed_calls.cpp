@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "common/bus/call_server.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -71,9 +73,12 @@ void PrefixedCalls::receive(const RawSample& sample) const {
   if (for_us) on_call_(call->id, call->cdr);
 }
 
-RawReaderOptions call_reader_options() {
+RawReaderOptions call_reader_options(CallRole role) {
+  // A request that is a little longer than a server takes still gets an answer that says so.
+  constexpr std::size_t kLargestRequest = 2 * kMaxRequestBytes, kLargestReply = 16 * kMaxRequestBytes;
   RawReaderOptions options;
   options.depth = kCallDepth;
+  options.largest_sample = role == CallRole::kServer ? kLargestRequest : kLargestReply;
   return options;
 }
 

@@ -53,7 +53,7 @@ class PrefixedCalls : public CallEndpoint {
 };
 
 /// What the raw endpoints of a service are: reliable, volatile, keep-last.
-RawReaderOptions call_reader_options();
+RawReaderOptions call_reader_options(CallRole role);
 RawWriterOptions call_writer_options();
 
 /// The topic that an end of a service receives, and the one that it sends.

@@ -51,6 +51,7 @@ struct StatusCallbacks {
   std::function<void(int total)> on_samples_lost;      ///< readers: samples lost so far
   std::function<void(int total)> on_samples_rejected;  ///< readers: samples so far that did not fit into the history
   std::function<void(const std::string& type)> on_type_mismatch;  ///< a peer uses the topic's name with another type
+  std::function<void()> on_too_large;  ///< writers: a message was not written (common/msg/largest_sample.hpp)
   /// Readers: a writer is matched, or no longer. What it has sent before may still come.
   std::function<void(const WriterId& writer, bool matched)> on_writer;
   /// Readers: whether messages of the writer are wanted, asked for each before its content is copied or looked at.

@@ -4,6 +4,11 @@
 
 #include <algorithm>
 
+#include "common/bus/robot.hpp"
+#include "common/bus/topic_roles.hpp"
+#include "common/msg/imu.hpp"
+#include "common/msg/largest_sample.hpp"
+
 namespace rtd::bus {
 
 std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t sequence) {
@@ -12,6 +17,30 @@ std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t s
   known->second = std::max(known->second, sequence);
   if (sequence <= expected) return std::nullopt;
   return RawLoss{writer, expected, static_cast<std::uint64_t>(sequence - expected)};
+}
+
+namespace {
+
+/// 0: a type that we do not know.
+template <class... T>
+std::size_t largest_of_type(const std::string& dds_type, TypeList<T...>) {
+  if (dds_type == msg::kImuDdsType) return msg::largest_sample<msg::Imu>();
+  std::size_t largest = 0;
+  (void)((dds_type == dds_type_name(MessageTraits<T>::kId) && (largest = msg::largest_sample<T>()) > 0) || ...);
+  return largest;
+}
+
+bool is_topic_of_ours(const std::string& wire_name) {
+  const std::string name = split_robot(wire_name).topic;
+  return std::ranges::any_of(topic_roles(), [&name](const TopicRoles& roles) { return roles.topic == name; });
+}
+
+}  // namespace
+
+std::size_t largest_sample(const RawTopic& topic) {
+  const std::size_t known = largest_of_type(topic.type, MessageTypes());
+  const bool small = known > 0 && known <= msg::kLargestSmallSample;
+  return small || (known > 0 && is_topic_of_ours(topic.name)) ? known : msg::kLargestOfOthers;
 }
 
 ErasedCallback raw_callback(RawHandlers handlers) {

@@ -42,6 +42,7 @@ class ByteBlock {
     if (!bytes_to_keep.empty()) std::memcpy(bytes().data(), bytes_to_keep.data(), bytes_to_keep.size());
   }
   std::span<std::byte> bytes() { return memory_ ? std::span(memory_.get() + kLead, size_) : std::span<std::byte>(); }
+  std::size_t capacity() const { return capacity_; }
   std::span<const std::byte> view() const { return const_cast<ByteBlock*>(this)->bytes(); }
 
  private:
@@ -75,6 +76,10 @@ struct RawTopic {
   bool keyed = false;  ///< all instances of a keyed topic count as one
   bool operator==(const RawTopic&) const = default;
 };
+
+/// The largest sample of a topic, its CDR header included: by the table of common/msg/largest_sample.hpp, and
+/// msg::kLargestOfOthers for unknown types and for large ones on topics of other programs.
+std::size_t largest_sample(const RawTopic& topic);
 
 struct TopicWriter {
   WriterId id{};
@@ -142,6 +147,7 @@ struct RawReaderOptions {
   /// Takes the samples of a TopicWriter::shared_memory from there instead of having them sent. Spares the writer a
   /// copy, but then the writer's own short history is all the time that there is.
   bool in_place = false;
+  std::size_t largest_sample = 0;  ///< bytes; larger ones are refused. 0: as largest_sample() of the topic
   bool operator==(const RawReaderOptions&) const = default;
 };
 

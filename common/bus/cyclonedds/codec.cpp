@@ -7,6 +7,7 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_cdr.hpp"
+#include "common/msg/largest_sample.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -38,7 +39,8 @@ std::shared_ptr<const void> decode_fields(const ByteBlock& bytes) {
 SampleType sample_type(MessageId id) {
   const std::uint32_t plain_bytes =
       visit_message_type(id, []<class T>() -> std::uint32_t { return MessageTraits<T>::kPlain ? sizeof(T) : 0; });
-  return {dds_type_name(id), false, plain_bytes, false};
+  const std::size_t largest = visit_message_type(id, []<class T>() { return msg::largest_sample<T>(); });
+  return {dds_type_name(id), false, plain_bytes, false, largest};
 }
 
 std::shared_ptr<ByteBlock> plain_block(MessageId id, const ddsi_sertype* type) {

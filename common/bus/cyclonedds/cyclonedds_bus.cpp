@@ -27,8 +27,9 @@ CycloneReader::Handlers typed_handlers(MessageId id, ErasedCallback on_message, 
   return handlers;
 }
 
-SampleType raw_type(const RawTopic& topic) {
-  return {topic.type, topic.keyed, 0, true};
+SampleType raw_type(const RawTopic& topic, const RawReaderOptions& options = {}) {
+  const std::size_t largest = options.largest_sample > 0 ? options.largest_sample : largest_sample(topic);
+  return {topic.type, topic.keyed, 0, true, largest};
 }
 
 CycloneReader::Handlers raw_handlers(const RawHandlers& handlers) {
@@ -79,8 +80,9 @@ std::unique_ptr<CallEndpoint> create_calls_on(const std::shared_ptr<Participant>
   return std::make_unique<PrefixedCalls>(
       role, client, std::move(writer),
       [&](const RawHandlers& handlers) {
-        return std::make_unique<CycloneReader>(participant, raw_type(received), received.name,
-                                               raw_reader_qos(call_reader_options()), raw_handlers(handlers));
+        const RawReaderOptions options = call_reader_options(role);
+        return std::make_unique<CycloneReader>(participant, raw_type(received, options), received.name,
+                                               raw_reader_qos(options), raw_handlers(handlers));
       },
       std::move(on_call));
 }
@@ -139,7 +141,7 @@ class CycloneRawBus : public RegistryRawBus {
 
   std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
                                     RawHandlers handlers) override {
-    return std::make_unique<CycloneReader>(participant_, raw_type(topic), topic.name, raw_reader_qos(options),
+    return std::make_unique<CycloneReader>(participant_, raw_type(topic, options), topic.name, raw_reader_qos(options),
                                            raw_handlers(handlers));
   }
   std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,

@@ -12,6 +12,7 @@
 
 #include "common/bus/backend.hpp"
 #include "common/bus/network.hpp"
+#include "common/msg/largest_sample.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -86,7 +87,8 @@ std::string discovery(const NetworkOptions& network, DiscoveryPort port) {
 
 /// A volatile reader begins with the first heartbeat of a writer of another vendor, for which it asks at once. A lost
 /// sample is noticed and repaired within some ms. No writer waits for a slow or dead reader: histories are short, so
-/// the limit on bytes not yet acknowledged may be out of reach.
+/// the limit on bytes not yet acknowledged may be out of reach. What is larger than any sample may be is given up when
+/// its first fragment comes, as if the writer had said that it is gone.
 std::string internal(const BusOptions& options, const HostLimits& limits) {
   const auto buffer = [](const char* name, std::uint32_t size) {
     return "<" + std::string(name) + R"( min="default" max=")" + bytes(size) + "\"/>";
@@ -97,6 +99,7 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
                      R"(<HeartbeatInterval min="5 ms" minsched="20 ms" max="1 s">20 ms</HeartbeatInterval>)" +
                      element("PreEmptiveAckDelay", "1 ms") + element("NackDelay", "5 ms") +
                      element("AutoReschedNackDelay", "200 ms") +
+                     element("MaxSampleSize", bytes(msg::kLargestOfOthers)) +
                      element("Watermarks", element("WhcHigh", "1 GB") + element("WhcHighInit", "1 GB") +
                                                element("WhcAdaptive", "false")));
 }

@@ -11,6 +11,7 @@
 
 #include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/cyclonedds/sample_limits.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -78,6 +79,7 @@ Listener writer_listener(StatusReporter& reporter) {
 CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,
                              Qos qos, Handlers handlers)
     : participant_(std::move(participant)),
+      largest_(type.largest_bytes),
       on_sample_(std::move(handlers.on_sample)),
       on_gap_(std::move(handlers.on_gap)),
       status_(std::move(handlers.status), thread_),
@@ -99,8 +101,8 @@ CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const Sam
   reader_ = reader;
   entry_.emplace(participant_->node_endpoints(), topic, guid_of(reader), NodeEndpoints::Direction::kReads);
   if (status_.callbacks().on_type_mismatch) types_.emplace(participant_->types(), topic, type.name, status_);
-  thread_.wake();  // a sample may have come before reader_ was known
-  if (status_.callbacks().on_writer) thread_.post([this] { note_writers(); });  // so may a match
+  thread_.wake();                            // a sample may have come before reader_ was known
+  thread_.post([this] { note_writers(); });  // so may a match
 }
 
 CycloneReader::~CycloneReader() {
@@ -108,13 +110,14 @@ CycloneReader::~CycloneReader() {
   types_.reset();
   dds_set_listener(reader_, nullptr);  // waits for a running one
   thread_.stop();                      // waits for a running callback; only now nothing takes from the reader
+  SampleLimits::of_process().note(this, {}, largest_);
   dds_delete(reader_);
 }
 
 /// In a listener, where Cyclone must not be asked.
 void CycloneReader::note_matched(int writers) {
   status_.report_matched(writers);
-  if (status_.callbacks().on_writer) thread_.post([this] { note_writers(); });
+  thread_.post([this] { note_writers(); });
 }
 
 /// Cyclone names a writer by a handle that means nothing once the writer is gone, so the present ones are compared.
@@ -122,7 +125,9 @@ void CycloneReader::note_writers() {
   const dds_entity_t reader = reader_;
   if (reader == 0) return;
   const std::set<WriterId> now = matched_writers(reader);
+  SampleLimits::of_process().note(this, now, largest_);
   const auto& on_writer = status_.callbacks().on_writer;
+  if (!on_writer) return;
   for (const WriterId& writer : writers_)
     if (!now.contains(writer)) on_writer(writer, false);
   for (const WriterId& writer : now)
@@ -193,6 +198,7 @@ bool CycloneWriter::wait_acknowledged(int timeout_ms) {
 TypedWriter::TypedWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic, Qos qos,
                          StatusCallbacks callbacks)
     : id_(id),
+      largest_(sample_type(id).largest_bytes),
       writer_(participant, sample_type(id), topic, std::move(qos), std::move(callbacks)),
       shares_memory_(participant->shares_memory() && dds_is_shared_memory_available(writer_.handle())) {}
 
@@ -202,7 +208,10 @@ TypedWriter::~TypedWriter() {
 
 bool TypedWriter::write(const void* message) {
   if (shares_memory_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
-  return writer_.write(encode(id_, writer_.type(), message));
+  std::shared_ptr<ByteBlock> sample = encode(id_, writer_.type(), message);
+  if (sample->view().size() <= largest_) return writer_.write(std::move(sample));
+  writer_.report_too_large();
+  return false;
 }
 
 void* TypedWriter::loan() {

@@ -39,6 +39,7 @@ class CycloneReader : public ReaderBackend {
   void note_writers();
 
   std::shared_ptr<Participant> participant_;
+  const std::size_t largest_;  ///< sample
   const std::function<bool(const TakenSample&)> on_sample_;
   const std::function<void(const RawLoss&)> on_gap_;
   SequenceGaps gaps_;                         // used by the callback thread
@@ -65,6 +66,7 @@ class CycloneWriter {
   /// The bytes must not change afterwards. `source_ns` 0: now. Thread-safe.
   bool write(std::shared_ptr<ByteBlock> bytes, std::int64_t source_ns = 0);
   int matched() const { return status_.matched(); }
+  void report_too_large() { status_.report_too_large(); }
   bool wait_acknowledged(int timeout_ms);
 
  private:
@@ -96,6 +98,7 @@ class TypedWriter : public WriterBackend {
 
  private:
   const MessageId id_;
+  const std::size_t largest_;  ///< sample
   CycloneWriter writer_;
   const bool shares_memory_;
   std::map<void*, std::shared_ptr<ByteBlock>> loans_;

@@ -60,6 +60,10 @@ std::span<const std::byte> bytes_of(const ddsi_serdata* sample) {
   return ours(sample).bytes ? std::as_const(*ours(sample).bytes).view() : std::span<const std::byte>();
 }
 
+bool is_size_of(const ddsi_sertype* type, std::size_t size) {
+  return size >= kHeaderBytes && size <= static_cast<const Sertype*>(type)->description.largest_bytes;
+}
+
 /// Writer and number stand in the headers of the packet that brought the first fragment. Cyclone keeps the packet and
 /// has turned its numbers to our byte order; the writer's id it turned as well.
 SampleOrigin origin_of(const nn_rdata& fragment) {
@@ -90,7 +94,7 @@ bool copy_fragments(const nn_rdata* fragment, std::span<std::byte> target) {
 
 ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragments,
                            std::size_t size) {
-  if (size < kHeaderBytes) return nullptr;
+  if (!is_size_of(type, size)) return nullptr;
   auto block = acquire_block(type, size);
   if (!copy_fragments(fragments, block->bytes())) return nullptr;
   Serdata* const sample = create_serdata(type, kind, std::move(block));
@@ -101,7 +105,7 @@ ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, con
 
 ddsi_serdata* from_pieces(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
                           const ddsrt_iovec_t* pieces, std::size_t size) {
-  if (size < kHeaderBytes) return nullptr;
+  if (!is_size_of(type, size)) return nullptr;
   auto block = acquire_block(type, size);
   std::size_t copied = 0;
   for (ddsrt_msg_iovlen_t i = 0; i < count && copied < size; ++i) {

@@ -20,6 +20,7 @@ struct SampleType {
   bool keyed = false;
   std::uint32_t plain_bytes = 0;    ///< > 0: every sample has so many behind its header, as in memory
   bool any_representation = false;  ///< also XCDR2
+  std::size_t largest_bytes = 0;    ///< of a sample, header included: larger ones are dropped
   bool operator==(const SampleType&) const = default;
 };
 

@@ -8,6 +8,7 @@
 
 #include "common/bus/fastdds/message_type.hpp"
 #include "common/bus/message_pool.hpp"
+#include "common/msg/largest_sample.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -16,7 +17,9 @@ template <class T>
 class MessageCodec : public Codec {
  public:
   bool plain() const override { return kPlain; }
+  std::size_t largest_sample() const override { return msg::largest_sample<T>(); }
   dds::TypeSupport create_type() const override { return dds::TypeSupport(new MessageType<T>); }
+  std::size_t sample_size(const void* message) const override { return cdr_size(*static_cast<const T*>(message)); }
   bool write(dds::DataWriter& writer, const void* message) const override {
     return succeeded(writer.write(const_cast<void*>(message)));  // the vendor only reads it
   }
@@ -79,10 +82,15 @@ TakenSample MessageCodec<T>::take(dds::DataReader& reader, const Accepts& accept
 
 class RawCodec : public Codec {
  public:
-  RawCodec(RawTopic topic, bool bounded, std::uint32_t fixed_bytes)
-      : topic_(std::move(topic)), bounded_(bounded), fixed_bytes_(fixed_bytes) {}
+  /// `largest` 0: as the topic has it.
+  RawCodec(RawTopic topic, bool bounded, std::uint32_t fixed_bytes, std::size_t largest = 0)
+      : topic_(std::move(topic)),
+        bounded_(bounded),
+        fixed_bytes_(fixed_bytes),
+        largest_(largest > 0 ? largest : bus::largest_sample(topic_)) {}
 
   bool plain() const override { return bounded_; }
+  std::size_t largest_sample() const override { return largest_; }
   dds::TypeSupport create_type() const override {
     return dds::TypeSupport(new RawType(topic_, bounded_, fixed_bytes_));
   }
@@ -94,6 +102,7 @@ class RawCodec : public Codec {
   const RawTopic topic_;
   const bool bounded_;
   const std::uint32_t fixed_bytes_;
+  const std::size_t largest_;
   MessagePool<ByteBlock> pool_;
 };
 
@@ -142,7 +151,7 @@ std::unique_ptr<Codec> create_codec(MessageId id) {
 }
 
 std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawReaderOptions& options) {
-  return std::make_unique<RawCodec>(topic, options.in_place, 0);
+  return std::make_unique<RawCodec>(topic, options.in_place, 0, options.largest_sample);
 }
 
 std::unique_ptr<Codec> create_raw_codec(const RawTopic& topic, const RawWriterOptions& options) {

@@ -26,7 +26,11 @@ class Codec {
  public:
   virtual ~Codec() = default;
   virtual bool plain() const = 0;
+  /// Bytes, CDR header included. A reader refuses larger ones.
+  virtual std::size_t largest_sample() const = 0;
   virtual dds::TypeSupport create_type() const = 0;
+  /// Of a message that a writer of ours makes; 0: it passes on what others made.
+  virtual std::size_t sample_size(const void* /*message*/) const { return 0; }
   /// Thread-safe.
   virtual bool write(dds::DataWriter& writer, const void* message) const = 0;
   /// The next sample of a writer that `accepts` wants, if it is given; one of another writer gives kNoData and is not

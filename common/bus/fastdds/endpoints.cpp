@@ -19,10 +19,8 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
   dds::Topic* const known = participant_->topic(topic, *codec_);
   if (status_.callbacks().on_type_mismatch)
     types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
-  {
-    const std::lock_guard lock(participant_->readers_mutex());
-    reader_ = subscriber_.create_datareader(known, with_type_hash(qos, known->get_type_name()), this);
-  }
+  reader_ =
+      participant_->create_reader(*known, with_type_hash(qos, known->get_type_name()), codec_->largest_sample(), *this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   entry_.emplace(participant_->node_endpoints(), topic, to_writer_id(guid()), NodeEndpoints::Direction::kReads);
   thread_.wake();  // a sample may have come before reader_ was known
@@ -34,7 +32,7 @@ FastddsReader::~FastddsReader() {
   entry_.reset();
   types_.reset();
   thread_.stop();  // waits for a running callback; only now nothing takes from the reader
-  const std::lock_guard lock(participant_->readers_mutex());
+  const std::lock_guard lock(participant_->endpoints_mutex());
   subscriber_.delete_datareader(reader);
 }
 
@@ -77,7 +75,10 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
   if (status_.callbacks().on_type_mismatch)
     types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
   lends_own_memory_ = codec_->in_place() && qos.data_sharing().kind() != dds::OFF;
-  writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
+  {
+    const std::lock_guard lock(participant_->endpoints_mutex());
+    writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
+  }
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
   participant_->writer_created();
   entry_.emplace(participant_->node_endpoints(), topic, id(), NodeEndpoints::Direction::kWrites);
@@ -87,6 +88,12 @@ FastddsWriter::~FastddsWriter() {
   writer_->set_listener(nullptr);
   entry_.reset();
   publisher_.delete_datawriter(writer_);
+}
+
+bool FastddsWriter::write(const void* message) {
+  if (codec_->sample_size(message) <= codec_->largest_sample()) return codec_->write(*writer_, message);
+  status_.report_too_large();
+  return false;
 }
 
 void* FastddsWriter::loan() {

@@ -81,7 +81,7 @@ class FastddsWriter : public WriterBackend, private dds::DataWriterListener {
                 const dds::DataWriterQos& qos, StatusCallbacks callbacks);
   ~FastddsWriter() override;
 
-  bool write(const void* message) override { return codec_->write(*writer_, message); }
+  bool write(const void* message) override;
   void* loan() override;
   bool write_loaned(void* slot) override;
   void discard_loan(void* slot) override;

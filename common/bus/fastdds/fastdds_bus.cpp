@@ -31,8 +31,10 @@ struct CallSample {
 
 class CallCodec : public Codec {
  public:
-  explicit CallCodec(RawTopic topic) : topic_(std::move(topic)) {}
+  CallCodec(RawTopic topic, CallRole role)
+      : topic_(std::move(topic)), largest_(call_reader_options(role).largest_sample) {}
   bool plain() const override { return false; }
+  std::size_t largest_sample() const override { return largest_; }
   dds::TypeSupport create_type() const override { return dds::TypeSupport(new RawType(topic_, false, 0)); }
   bool write(dds::DataWriter& writer, const void* message) const override {
     const CallOutput& output = *static_cast<const CallOutput*>(message);
@@ -53,6 +55,7 @@ class CallCodec : public Codec {
 
  private:
   const RawTopic topic_;
+  const std::size_t largest_;
 };
 
 CallId to_call_id(const rtps::SampleIdentity& identity) {
@@ -79,9 +82,10 @@ class FastddsCalls : public CallEndpoint {
                OnCall on_call)
       : role_(role),
         on_call_(std::move(on_call)),
-        writer_(participant, std::make_unique<CallCodec>(sent), sent.name, raw_writer_qos(call_writer_options()), {}),
-        reader_(participant, std::make_unique<CallCodec>(received), received.name,
-                raw_reader_qos(call_reader_options()),
+        writer_(participant, std::make_unique<CallCodec>(sent, role), sent.name, raw_writer_qos(call_writer_options()),
+                {}),
+        reader_(participant, std::make_unique<CallCodec>(received, role), received.name,
+                raw_reader_qos(call_reader_options(role)),
                 [this](const std::shared_ptr<const void>& sample, const WriterId&) {
                   receive(*static_cast<const CallSample*>(sample.get()));
                 },

@@ -93,8 +93,7 @@ struct RawData {
 class RawType : public TypeSupportBase {
  public:
   RawType(const RawTopic& topic, bool bounded, std::uint32_t fixed_bytes)
-      : TypeSupportBase(topic.type, fixed_bytes > 0 ? fixed_bytes : (bounded ? kMaxInPlace : kFirstGuess), topic.keyed),
-        bounded_(bounded) {}
+      : TypeSupportBase(topic.type, fixed_bytes > 0 ? fixed_bytes : kFirstGuess, topic.keyed), bounded_(bounded) {}
 
   std::size_t write(const void* data, std::span<std::uint8_t> to) const override {
     const std::span<const std::byte> cdr = static_cast<const RawData*>(data)->output;
@@ -116,9 +115,8 @@ class RawType : public TypeSupportBase {
   bool plain() const override { return bounded_; }
 
  private:
-  static constexpr std::uint32_t kFirstGuess = 1024;      // memory grows with the samples
-  static constexpr std::uint32_t kMaxInPlace = 64 << 20;  // the size is not announced; a larger sample would be refused
-  const bool bounded_;                                    // what shared memory asks for
+  static constexpr std::uint32_t kFirstGuess = 1024;  // of writers, whose memory grows with the samples
+  const bool bounded_;                                // what shared memory asks for
 };
 
 }  // namespace rtd::bus::fastdds

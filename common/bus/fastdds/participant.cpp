@@ -253,4 +253,17 @@ dds::Topic* Participant::topic(const std::string& name, const Codec& codec) {
   return topic;
 }
 
+/// A history of the policy that our readers have takes its largest sample from the type, once, and gives up larger ones
+/// as samples that are gone. The type itself keeps what is announced to peers.
+dds::DataReader* Participant::create_reader(dds::Topic& topic, const dds::DataReaderQos& qos, std::size_t largest,
+                                            dds::DataReaderListener& listener) {
+  const std::lock_guard lock(endpoints_mutex_);
+  dds::TypeSupport type = participant_->find_type(topic.get_type_name());
+  std::uint32_t& size = largest_sample(*type);
+  const std::uint32_t announced = std::exchange(size, static_cast<std::uint32_t>(largest));
+  dds::DataReader* const reader = subscriber(topic.get_name()).create_datareader(&topic, qos, &listener);
+  size = announced;
+  return reader;
+}
+
 }  // namespace rtd::bus::fastdds

@@ -5,6 +5,8 @@
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <filesystem>
@@ -47,6 +49,9 @@ class Participant {
   /// The topic of that name, created when new; lives as long as the participant.
   /// Throws BusError when it exists with another type.
   dds::Topic* topic(const std::string& name, const Codec& codec);
+  /// A reader that gives up samples of more than `largest` bytes at their first fragment. nullptr: refused.
+  dds::DataReader* create_reader(dds::Topic& topic, const dds::DataReaderQos& qos, std::size_t largest,
+                                 dds::DataReaderListener& listener);
   TopicTypes& types() { return listener_.types(); }
   WriterId id() const;
   /// What is announced to ROS 2: endpoints enter themselves.
@@ -62,9 +67,9 @@ class Participant {
   void writer_created() {
     if (secured_) hide_shared_memory();
   }
-  /// Held while Fast DDS creates or deletes a reader: its list of readers with a liveliness has no lock of its own
-  /// where it shrinks.
-  std::mutex& readers_mutex() { return readers_mutex_; }
+  /// Held while Fast DDS creates an endpoint, which reads the size of its type, or deletes a reader: its list of
+  /// readers with a liveliness has no lock of its own where it shrinks.
+  std::mutex& endpoints_mutex() { return endpoints_mutex_; }
 
  private:
   void create_publishers(const NetworkOptions& network);
@@ -77,7 +82,7 @@ class Participant {
   std::uint32_t participant_id_ = 0;
   dds::Publisher *publisher_ = nullptr, *host_publisher_ = nullptr;
   dds::Subscriber *subscriber_ = nullptr, *host_subscriber_ = nullptr;
-  std::mutex topics_mutex_, readers_mutex_;
+  std::mutex topics_mutex_, endpoints_mutex_;
 };
 
 }  // namespace rtd::bus::fastdds

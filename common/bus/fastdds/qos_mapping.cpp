@@ -102,6 +102,8 @@ dds::DataWriterQos writer_qos(const QosSettings& settings, bool plain) {
 
 dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain) {
   auto qos = endpoint_qos<dds::DataReaderQos>(settings, plain);
+  // Only so Fast DDS gives up a sample that is too large before it takes memory for it (Participant::create_reader).
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
   set_representations(qos, {dds::XCDR_DATA_REPRESENTATION});
   set_timing(qos, milliseconds(kResponseDelayMs));
   return qos;

@@ -132,7 +132,7 @@ class InprocessRawWriter : public RawWriter {
 /// Raw endpoints meet raw endpoints, so calls are the same from a typed connection and from a raw one.
 std::unique_ptr<CallEndpoint> create_calls_in(const std::shared_ptr<Domain>& domain, const CallTopics& topics,
                                               CallRole role, OnCall on_call) {
-  const RawReaderOptions options = call_reader_options();
+  const RawReaderOptions options = call_reader_options(role);
   const RawTopic received = received_topic(topics, role);
   std::uint64_t client = 0;
   const WriterId id = domain->new_id();

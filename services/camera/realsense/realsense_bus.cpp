@@ -14,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr std::size_t kEvents = 64;
 constexpr int kStreamDepth = 8;
+constexpr std::size_t kLargestImage = 32U << 20U;  // bytes
 
 /// Cyclone DDS refuses topics with '-' in their names, and these cameras use Fast DDS themselves.
 std::shared_ptr<bus::RawBus> connect_to_cameras(bus::BusOptions options) {
@@ -55,7 +56,7 @@ Subscriptions::Subscriptions(const bus::BusOptions& options)
                               queue_.push(Event{});
                             },
                         .on_demand = true,
-                        .reader = {.transient_local = true, .depth = kStreamDepth}}) {}
+                        .reader = {.transient_local = true, .depth = kStreamDepth, .largest_sample = kLargestImage}}) {}
 
 void Subscriptions::read(const std::string& topic, bool wanted) {
   const std::lock_guard lock(mutex_);

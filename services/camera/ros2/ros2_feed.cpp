@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::size_t kQueue = 32;  // messages of four topics: a quarter of a second
 constexpr int kReaderDepth = 8;     // images that may wait for the reader's thread
+constexpr std::size_t kLargestImage = 32U << 20U;  // bytes; 3840x2160 in colour has 25 MB
 constexpr const char* kImage = "sensor_msgs/Image";
 constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
@@ -51,7 +52,7 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
                               SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"",
                                           ros2::ros_topic(writer.topic.name), error.what());
                             },
-                        .reader = {.transient_local = true, .depth = kReaderDepth}}) {}
+                        .reader = {.transient_local = true, .depth = kReaderDepth, .largest_sample = kLargestImage}}) {}
 
 void Ros2Feed::clear() {
   while (queue_.pop_for(std::chrono::milliseconds(0))) {

@@ -13,8 +13,10 @@
 #include <map>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "tests/component/bus/patterns.hpp"
 
@@ -124,17 +126,42 @@ void send_heartbeats(Bus& bus, int) {
   while (!stop_asked(50ms)) writer.write(msg::ServiceStatus{.service = "peer", .pid = getpid()});
 }
 
+/// Two samples of so many MB on each of three topics, the second one as a request; then a TrackingResult.
+void send_large_samples(const BusOptions& options, int megabytes) {
+  const auto bus = connect(options);
+  const auto raw = connect_raw(options);
+  RawWriterOptions offered;
+  offered.qos.depth = 1;
+  offered.qos.deadline_ns = offered.qos.liveliness_lease_ns = 1'000'000'000;
+  std::vector<std::byte> sample(static_cast<std::size_t>(megabytes) * 1'000'000);
+  sample[1] = std::byte{1};
+  for (const RawTopic& topic : {RawTopic{topics::kStatus.name, "rtd_msgs::msg::dds_::ServiceStatus_"},
+                                RawTopic{"rq/test/largeRequest", "rtd_msgs::srv::dds_::Command_Request_"},
+                                RawTopic{topics::kFeatures.name, "rtd_msgs::msg::dds_::FeatureFrame_"}}) {
+    const auto writer = raw->writer(topic, offered);
+    while (writer->matched() == 0 && !stop_asked()) std::this_thread::sleep_for(1ms);
+    for (int i = 0; i < 2; ++i) {
+      writer->write(sample);
+      writer->wait_acknowledged(3000);
+    }
+  }
+  auto done = bus->writer(topics::kTracking);
+  wait_for_reader(done);
+  while (!stop_asked(20ms)) done.write({});
+}
+
 int run(const std::string& vendor, const std::string& role, std::uint32_t domain, int count) {
   static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
       {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
       {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
   const auto entry = kRoles.find(role);
-  if (entry == kRoles.end()) return 2;
   BusOptions options;
   options.iceoryx = vendor == "iceoryx";
   options.vendor = options.iceoryx ? "cyclonedds" : vendor;
   options.domain = domain;
   options.participant_name = "bus-peer";
+  if (role == "send_large") return send_large_samples(options, count), 0;
+  if (entry == kRoles.end()) return 2;
   entry->second(*connect(options), count);
   return 0;
 }

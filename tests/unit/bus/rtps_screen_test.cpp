@@ -157,9 +157,29 @@ TEST(RtpsFragmentsTest, missing_ones_are_found) {
   EXPECT_FALSE(whole(Fragments{.count = 2, .octets = 16})) << "half behind it";
   EXPECT_FALSE(whole(Fragments{.flags = 3})) << "a list of QoS without end";
   EXPECT_FALSE(whole(message({0x16, 1, 4, 0, 0, 0, 28, 0})));
-  std::vector<std::uint8_t> huge = message(data_frag({.size = 255, .octets = 255 - 60}));
-  huge[20 + 4 + 31] = 0xff;
-  EXPECT_FALSE(whole(huge)) << "4 GB";
+}
+
+/// A fragment of a sample of so many times 16 MiB of a writer of that kind.
+std::vector<std::uint8_t> fragment_of(std::uint8_t first, std::uint8_t times_16_mib, std::uint8_t writer_kind) {
+  constexpr std::size_t kBody = 20 + 4;
+  std::vector<std::uint8_t> datagram = message(data_frag({.first = first}));
+  datagram[kBody + 11] = writer_kind;
+  datagram[kBody + 31] = times_16_mib;
+  return datagram;
+}
+
+TEST(RtpsFragmentsTest, of_too_large_samples_the_first_alone_passes_for_readers_to_give_the_sample_up) {
+  constexpr std::uint8_t kOfApplication = 0x03;
+  EXPECT_TRUE(whole(fragment_of(2, 4 - 1, kOfApplication))) << "48 MiB";
+  EXPECT_TRUE(whole(fragment_of(1, 0xff, kOfApplication))) << "4 GB";
+  EXPECT_FALSE(whole(fragment_of(2, 0xff, kOfApplication)));
+  EXPECT_FALSE(whole(fragment_of(2, 4, kOfApplication))) << "64 MiB and 8 bytes";
+}
+
+TEST(RtpsFragmentsTest, of_discovery_are_of_small_samples) {
+  constexpr std::uint8_t kOfVendor = 0xc2;
+  EXPECT_TRUE(whole(fragment_of(1, 0, kOfVendor)));
+  EXPECT_FALSE(whole(fragment_of(1, 1, kOfVendor))) << "16 MiB";
 }
 
 TEST(SequenceGuardTest, accepts_steps_and_repeated_far_numbers) {

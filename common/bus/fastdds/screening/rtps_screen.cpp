@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 
+#include "common/msg/largest_sample.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -81,14 +83,25 @@ std::size_t behind_parameters(const Submessage& submessage, std::size_t at) {
   return 0;
 }
 
+/// Endpoints of applications give up what is too large themselves; those of the vendor do not.
+bool may_be_kept(std::byte writer_kind, std::uint64_t first_fragment, std::uint64_t sample) {
+  constexpr std::byte kBuiltin{0xc0};
+  if ((writer_kind & kBuiltin) == kBuiltin) return sample <= kLargestBuiltinSample;
+  return first_fragment == 1 || sample <= msg::kLargestOfOthers;
+}
+
+constexpr std::size_t kSubmessageHeader = 4;
+constexpr std::size_t kFirstFragment = 20, kSampleSize = SampleFragments::kSizeBehind - kSubmessageHeader;  // DATA_FRAG
+
 bool has_whole_fragments(const Submessage& data_frag) {
-  constexpr std::size_t kOffsetToQos = 2, kBehindOffset = 4, kFirstFragment = 20, kFragments = 24, kFragmentSize = 26,
-                        kSampleSize = 28, kHeader = 32;
+  constexpr std::size_t kOffsetToQos = 2, kBehindOffset = 4, kWriterKind = 11, kFragments = 24, kFragmentSize = 26,
+                        kHeader = 32;
   constexpr unsigned kHasQos = 2;
   if (data_frag.body.size() < kHeader) return false;
   const std::uint64_t first = data_frag.word(kFirstFragment), count = data_frag.half(kFragments),
                       size = data_frag.half(kFragmentSize), sample = data_frag.word(kSampleSize);
-  if (first == 0 || count == 0 || size == 0 || sample == 0 || sample > kMaxFragmentedSample) return false;
+  if (first == 0 || count == 0 || size == 0 || sample == 0) return false;
+  if (!may_be_kept(data_frag.body[kWriterKind], first, sample)) return false;
   const std::uint64_t begin = (first - 1) * size, end = std::min((first + count - 1) * size, sample);
   if (begin >= sample || (first + count - 2) * size >= sample) return false;
   std::size_t payload = std::max(kHeader, kBehindOffset + data_frag.half(kOffsetToQos));
@@ -115,6 +128,9 @@ class NumberReader {
   NumberReader(std::span<const std::byte> prefix, std::vector<WriterNumber>& largest) : largest_(largest) {
     set_source(prefix);
   }
+
+  /// Of the last submessage that names one.
+  const WriterGuid& source() const { return source_; }
 
   void read(const Submessage& submessage) {
     constexpr std::size_t kPrefixInInfoSource = 8, kNumber = 8;
@@ -162,8 +178,15 @@ RtpsMessage read_rtps_message(std::span<const std::byte> datagram) {
   for (auto rest = datagram.subspan(kMessageHeader); !rest.empty();) {
     const std::optional<Submessage> submessage = take(rest);
     if (!submessage) return message;
-    if (submessage->kind == Submessage::kDataFrag && !has_whole_fragments(*submessage)) message.whole_fragments = false;
     numbers.read(*submessage);
+    if (submessage->kind != Submessage::kDataFrag) continue;
+    if (has_whole_fragments(*submessage)) {
+      const auto body_at = static_cast<std::size_t>(submessage->body.data() - datagram.data());
+      message.fragments.push_back({numbers.source(), submessage->word(kFirstFragment), submessage->word(kSampleSize),
+                                   body_at - kSubmessageHeader});
+    } else {
+      message.whole_fragments = false;
+    }
   }
   message.well_formed = true;
   return message;

@@ -19,18 +19,30 @@ struct WriterNumber {
   std::uint64_t number;
 };
 
-constexpr std::uint32_t kMaxFragmentedSample = 256U << 20U;
+/// Of discovery and the like, in bytes.
+constexpr std::uint32_t kLargestBuiltinSample = 1U << 20U;
+
+/// A DATA_FRAG whose fragments are whole.
+struct SampleFragments {
+  WriterGuid writer;
+  std::uint32_t first_fragment = 0;  ///< they count from 1
+  std::uint32_t sample_bytes = 0;
+  std::size_t at = 0;                             ///< in the datagram
+  static constexpr std::size_t kSizeBehind = 32;  ///< from there to the 4 bytes of sample_bytes
+};
 
 /// What a datagram has in it, as far as Fast DDS relies on it without a check.
 struct RtpsMessage {
   /// The frame of an RTPS message: header, known submessages one behind the other, each of a whole number of words, the
   /// last one ending with the datagram.
   bool well_formed = false;
-  /// Each DATA_FRAG carries the fragments that it announces, of a sample of at most kMaxFragmentedSample bytes.
+  /// Each DATA_FRAG carries the fragments that it announces, of a sample that is not too large. By its first fragment
+  /// alone the readers of a larger one give it up: without that they would ask for it again and again.
   bool whole_fragments = true;
   /// The largest sequence number that DATA, DATA_FRAG, HEARTBEAT, HEARTBEAT_FRAG and GAP name, for each writer.
   /// Submessages too short for their numbers are passed over.
   std::vector<WriterNumber> numbers;
+  std::vector<SampleFragments> fragments;
 };
 
 /// Reads up to the first submessage that breaks the frame.

@@ -9,6 +9,7 @@
 ///   DiscoveryAdapter        listener of a participant that calls DiscoveryEvents
 ///   PublicationData         what discovery finds of a writer, with the names of version 3
 ///   PassingTransport        transport in front of another
+///   largest_sample()        of a type
 ///   set_timing(), set_representations(), add_discovery_server(), turn_off_direct_calls(), kShmPrefix, kVersion
 #if __has_include(<fastrtps/fastrtps_dll.h>)
 #include "common/bus/fastdds/versions/vendor_2.hpp"

@@ -80,6 +80,11 @@ class TypeSupportBase : public dds::TopicDataType, public TypeFunctions {
   bool is_plain() const final { return plain(); }
 };
 
+/// What a reader that is created takes at most, and what a writer that is created announces.
+inline std::uint32_t& largest_sample(dds::TopicDataType& type) {
+  return type.m_typeSize;
+}
+
 /// What discovery finds of a writer.
 struct PublicationData {
   explicit PublicationData(const rtps::WriterProxyData& data)

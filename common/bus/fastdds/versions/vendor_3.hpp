@@ -76,6 +76,11 @@ class TypeSupportBase : public dds::TopicDataType, public TypeFunctions {
   bool is_plain(dds::DataRepresentationId_t) const final { return plain(); }
 };
 
+/// What a reader that is created takes at most, and what a writer that is created announces.
+inline std::uint32_t& largest_sample(dds::TopicDataType& type) {
+  return type.max_serialized_type_size;
+}
+
 WriterId to_writer_id(const rtps::GUID_t& guid);
 TopicWriter to_topic_writer(const PublicationData& data);
 
