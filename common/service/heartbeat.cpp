@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/io/printable.hpp"
+#include "common/msg/largest_sample.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -30,6 +31,7 @@ void add_troubles(const std::string& topic, const bus::TopicTrouble& trouble, st
   add("incompatible_qos", trouble.incompatible_qos);
   add("type_mismatch", trouble.type_mismatch);
   add("implausible", trouble.implausible);
+  add("too_large", trouble.too_large);
 }
 
 void log_refusals(const std::string& topic, const bus::TopicTrouble& before, const bus::TopicTrouble& now) {
@@ -46,6 +48,19 @@ void log_refusals(const std::string& topic, const bus::TopicTrouble& before, con
         "'rtd topics list', stop it, or keep it out with keys (docs/security.md)\"",
         topic, now.implausible_field);
   }
+  if (before.too_large == 0 && now.too_large > 0)
+    SPDLOG_ERROR("event=message_too_large topic={} effect=\"it was not sent\" limit=\"docs/topics.md\"", topic);
+}
+
+/// The metrics that a heartbeat has room for: names of topics are those of others.
+void fit(std::vector<msg::Metric>& metrics) {
+  constexpr std::size_t kForTheRest = 8192, kBesideName = 24;
+  std::size_t bytes = kForTheRest;
+  const auto has_no_room = [&bytes](const msg::Metric& metric) {
+    bytes += metric.name.size() + kBesideName;
+    return bytes > msg::largest_sample<msg::ServiceStatus>();
+  };
+  metrics.erase(std::ranges::find_if(metrics, has_no_room), metrics.end());
 }
 
 void make_plausible(msg::ServiceStatus& status) {
@@ -58,6 +73,7 @@ void make_plausible(msg::ServiceStatus& status) {
     if (name.size() > kMaxName) name.resize(kMaxName);
     if (!std::isfinite(value)) value = 0;
   }
+  fit(status.metrics);
 }
 
 }  // namespace

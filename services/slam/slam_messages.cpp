@@ -8,6 +8,7 @@
 #include "common/msg/point_cloud.hpp"
 #include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/vision/samples.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -137,12 +138,20 @@ msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<Odomet
   return odometry;
 }
 
+msg::Path make_path(const std::deque<msg::PoseStamped>& poses) {
+  constexpr std::size_t kMost = 30'000;  // 4 MB at most
+  msg::Path path{poses.back().header, vision::thin_out(std::vector(poses.begin(), poses.end()), kMost)};
+  path.poses.back() = poses.back();
+  return path;
+}
+
 msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame) {
+  constexpr std::size_t kMost = 1'000'000;  // 16 MB
   std::vector<msg::CloudSlot> slots;
   slots.reserve(points.size());
   for (const MapPoint& point : points)
     slots.push_back({point.position.x(), point.position.y(), point.position.z(), point.static_probability});
-  return msg::make_cloud(slots, "intensity", stamp_ns, map_frame);
+  return msg::make_cloud(vision::thin_out(std::move(slots), kMost), "intensity", stamp_ns, map_frame);
 }
 
 msg::DiagnosticArray make_diagnostics(const msg::TrackingResult& result, const PoseTrust& trust,

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,7 +49,9 @@ msg::TransformStamped make_jump(const Eigen::Isometry3d& T_now_before, bool same
 /// time; zero without it, and its covariance huge.
 msg::Odometry make_odometry(const OdometryPose& pose, const std::optional<OdometryPose>& previous,
                             const FrameNames& names);
-/// x y z and intensity (the static probability), all float32.
+/// Up to the newest of the poses, oldest first; of very many every n-th, so that the message may be sent.
+msg::Path make_path(const std::deque<msg::PoseStamped>& poses);
+/// x y z and intensity (the static probability), all float32. Of very many points some.
 msg::PointCloud2 make_cloud(const std::vector<MapPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);
 
 /// Counters of the adapter.

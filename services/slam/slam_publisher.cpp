@@ -121,7 +121,7 @@ void SlamPublisher::publish_path() {
   const std::int64_t now_ns = service::monotonic_ns();
   if (path_.matched() == 0 || now_ns - path_published_ns_ < std::int64_t{config_.path_period_ms} * 1'000'000) return;
   path_published_ns_ = now_ns;
-  path_.write({poses_.back().header, {poses_.begin(), poses_.end()}});
+  path_.write(make_path(poses_));
 }
 
 SlamPublisher::CloudMoment SlamPublisher::cloud_moment() {

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/message_cdr.hpp"
+#include "common/msg/largest_sample.hpp"
 #include "common/service/run_service.hpp"
 
 namespace rtd::service {
@@ -122,6 +124,21 @@ TEST(Heartbeat, metrics_travel) {
   filter.set_metric("frames_dropped", 1);
   filter.set_metric("frames_dropped", 7);
   EXPECT_TRUE(eventually([&] { return seen == 7; }));
+}
+
+TEST(Heartbeat, has_the_metrics_that_it_has_room_for) {
+  const auto bus = bus::connect(domain(3));
+  StopToken stop;
+  std::atomic<std::size_t> most{0}, metrics{0};
+  Heartbeat filter(*bus, "filter", stop);
+  for (int i = 0; i < 2000; ++i) filter.set_metric(std::string(60, 'n') + std::to_string(i), 1);
+  const auto reader = bus->reader(bus::topics::kStatus, [&](const std::shared_ptr<const msg::ServiceStatus>& status) {
+    most = std::max(most.load(), bus::cdr_size(*status));
+    metrics = status->metrics.size();
+  });
+  EXPECT_TRUE(eventually([&] { return metrics > 0; }));
+  EXPECT_GT(metrics, 500U);
+  EXPECT_LE(most, msg::largest_sample<msg::ServiceStatus>()) << "others would not receive it";
 }
 
 TEST(Heartbeat, a_word_replaces_the_one_with_the_same_prefix) {

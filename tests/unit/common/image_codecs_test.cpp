@@ -14,6 +14,8 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "common/msg/largest_sample.hpp"
+#include "common/msg/ros.hpp"
 #include "common/vision/plain_png.hpp"
 
 namespace rtd::vision {
@@ -174,6 +176,13 @@ TEST(ImageCodecs, turn_photos_upright_as_opencv_does) {
     photo.insert(photo.begin() + 2, exif.begin(), exif.end());
     EXPECT_EQ(difference_from_opencv(photo), "") << int{orientation};
   }
+}
+
+TEST(ImageCodecs, make_no_jpeg_that_is_too_large_to_be_sent) {
+  constexpr std::size_t kRest = 1024;  // of the message
+  cv::Mat noise(1200, 1920, CV_8UC3);
+  cv::randu(noise, 0, 256);
+  EXPECT_LE(encode_jpeg(noise, 100).size() + kRest, msg::largest_sample<msg::CompressedImage>());
 }
 
 TEST(ImageCodecs, encode_to_the_bytes_of_opencv) {

@@ -9,7 +9,9 @@
 #include <map>
 
 #include "common/geometry/se3.hpp"
+#include "common/msg/largest_sample.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "services/slam/config.hpp"
 
@@ -122,6 +124,26 @@ TEST(Cloud, lays_out_floats) {
   EXPECT_EQ(intensity, 0.5F);
   EXPECT_EQ(cloud.header.stamp.sec, 7);
   EXPECT_EQ(make_cloud({}, 0, "map").width, 0U);
+}
+
+TEST(Cloud, of_a_huge_map_is_thinned_out_to_what_may_be_sent) {
+  const msg::PointCloud2 cloud = make_cloud(std::vector<MapPoint>(1'500'000), 0, std::string(100, 'm'));
+  EXPECT_GT(cloud.width, 500'000U);
+  EXPECT_LE(ros::encoded_size<ros::Wire::kCdr>(cloud), msg::largest_sample<msg::PointCloud2>());
+}
+
+TEST(Path, of_a_day_is_thinned_out_to_what_may_be_sent_and_ends_at_the_camera) {
+  std::deque<msg::PoseStamped> poses(1'000'000);  // the most that slam.path_length allows
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    poses[i].header.frame_id = "a_robot_with_a_name_of_32_letter/map";
+    poses[i].pose.position.x = static_cast<double>(i);
+  }
+  const msg::Path path = make_path(poses);
+  EXPECT_LE(ros::encoded_size<ros::Wire::kCdr>(path), msg::largest_sample<msg::Path>());
+  EXPECT_EQ(path.poses.front().pose.position.x, 0);
+  EXPECT_EQ(path.poses.back().pose.position.x, 999'999);
+  poses.resize(2000);
+  EXPECT_EQ(make_path(poses).poses.size(), 2000U);
 }
 
 TEST(Diagnostics, level_follows_the_trouble) {

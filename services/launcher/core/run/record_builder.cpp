@@ -174,7 +174,8 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
       const std::string peer = about(metric::kPeerPrefix);
       report_once(peer, peer + " is " + what + ": no heartbeat");
     } else if (name.starts_with(metric::kTopicPrefix) &&
-               (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch" || what == "implausible")) {
+               (what == "rejected" || what == "incompatible_qos" || what == "type_mismatch" || what == "implausible" ||
+                what == "too_large")) {
       const std::string topic = about(metric::kTopicPrefix);
       report_once(status.service + ' ' + name, status.service + ": " + topic + ": " + what);
     }
