@@ -13,6 +13,7 @@
 #include <iterator>
 #include <ranges>
 
+#include "common/bus/host/ring_folder.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
@@ -88,6 +89,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   options.participant_name = participant_name;
   if (options.ros_graph == "auto") options.ros_graph = ros_graph_of_environment();
   options.security = security_options(config.security, participant_name, options.robot);
+  options.rings = process_environment()(bus::kRingsVariable).value_or("");
   if (options.vendor != "inprocess") options.environment = follow_dds_environment(process_environment(), options);
   return options;
 }

@@ -21,6 +21,9 @@ namespace rtd::bus::fastdds {
 /// process had been stopped. Otherwise every lease that ran out meanwhile ends at once, and Fast DDS 2.9 loses a
 /// participant for good whose next announcement arrives in the microseconds in which it is forgotten. When all
 /// processes of a robot continue at the same moment (a paused container), that is one pair of them in ten.
+///
+/// Trial files: before its first ring in a folder, Fast DDS makes and removes a small file in the working directory, to
+/// see how much room its own data takes. It is in /dev/shm instead: not every working directory is writable.
 void link_c_library_functions() noexcept;
 
 }  // namespace rtd::bus::fastdds

@@ -2,9 +2,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/endpoints.hpp"
 
+#include <type_traits>
 #include <utility>
 
 namespace rtd::bus::fastdds {
+namespace {
+
+/// With its ring where those of the participant are, and the hash of its type.
+template <class Qos>
+Qos placed(Qos qos, const dds::Topic& topic, const Participant& participant) {
+  if (qos.data_sharing().kind() != dds::OFF) {
+    const std::string folder = participant.rings();
+    place_ring(qos.data_sharing(), folder);
+    constexpr bool kWrites = std::is_same_v<Qos, dds::DataWriterQos>;
+    const std::string partitions = participant.ring_partitions(folder, kWrites);
+    if (!partitions.empty()) qos.properties().properties().emplace_back("partitions", partitions);
+  }
+  return with_type_hash(std::move(qos), topic.get_type_name());
+}
+
+}  // namespace
 
 FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::unique_ptr<Codec> codec,
                              const std::string& topic, const dds::DataReaderQos& qos, ErasedCallback on_message,
@@ -19,8 +36,7 @@ FastddsReader::FastddsReader(std::shared_ptr<Participant> participant, std::uniq
   dds::Topic* const known = participant_->topic(topic, *codec_);
   if (status_.callbacks().on_type_mismatch)
     types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
-  reader_ =
-      participant_->create_reader(*known, with_type_hash(qos, known->get_type_name()), codec_->largest_sample(), *this);
+  reader_ = participant_->create_reader(*known, placed(qos, *known, *participant_), codec_->largest_sample(), *this);
   if (reader_ == nullptr) throw BusError("Fast DDS refused a reader on topic " + topic);
   entry_.emplace(participant_->node_endpoints(), topic, to_writer_id(guid()), NodeEndpoints::Direction::kReads);
   thread_.wake();  // a sample may have come before reader_ was known
@@ -74,13 +90,13 @@ FastddsWriter::FastddsWriter(std::shared_ptr<Participant> participant, std::uniq
   dds::Topic* const known = participant_->topic(topic, *codec_);
   if (status_.callbacks().on_type_mismatch)
     types_.emplace(participant_->types(), topic, known->get_type_name(), status_);
-  lends_own_memory_ = codec_->in_place() && qos.data_sharing().kind() != dds::OFF;
+  const dds::DataWriterQos asked = placed(qos, *known, *participant_);
+  lends_own_memory_ = codec_->in_place() && asked.data_sharing().kind() != dds::OFF;
   {
     const std::lock_guard lock(participant_->endpoints_mutex());
-    writer_ = publisher_.create_datawriter(known, with_type_hash(qos, known->get_type_name()), this);
+    writer_ = publisher_.create_datawriter(known, asked, this);
   }
   if (writer_ == nullptr) throw BusError("Fast DDS refused a writer on topic " + topic);
-  participant_->writer_created();
   entry_.emplace(participant_->node_endpoints(), topic, id(), NodeEndpoints::Direction::kWrites);
 }
 

@@ -177,19 +177,18 @@ class FastddsBackend : public BusBackend {
   FastddsBackend(const std::shared_ptr<Participant>& participant, const BusOptions& options)
       : BusBackend("fastdds"),
         participant_(participant),
-        shared_memory_(options.shared_memory),
         announcer_(participant->node_endpoints(), participant->id(), options, writers_of(participant)) {}
 
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
                                                StatusCallbacks callbacks) override {
     auto codec = create_codec(id);
-    const auto qos = writer_qos(settings(profile), codec->plain());
+    const auto qos = writer_qos(qos_settings(profile), codec->plain());
     return std::make_unique<FastddsWriter>(participant_, std::move(codec), topic, qos, std::move(callbacks));
   }
   std::unique_ptr<ReaderBackend> create_reader(MessageId id, const std::string& topic, QosProfile profile,
                                                ErasedCallback on_message, StatusCallbacks callbacks) override {
     auto codec = create_codec(id);
-    const auto qos = reader_qos(settings(profile), codec->plain());
+    const auto qos = reader_qos(qos_settings(profile), codec->plain());
     return std::make_unique<FastddsReader>(participant_, std::move(codec), topic, qos, std::move(on_message),
                                            std::move(callbacks));
   }
@@ -198,14 +197,7 @@ class FastddsBackend : public BusBackend {
   }
 
  private:
-  QosSettings settings(QosProfile profile) const {
-    QosSettings settings = qos_settings(profile);
-    settings.data_sharing = settings.data_sharing && shared_memory_;
-    return settings;
-  }
-
   std::shared_ptr<Participant> participant_;
-  const bool shared_memory_;
   NodeAnnouncer announcer_;
 };
 

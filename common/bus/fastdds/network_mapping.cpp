@@ -9,7 +9,10 @@
 #include <span>
 #include <utility>
 
+#include "common/bus/fastdds/qos_mapping.hpp"
+#include "common/bus/fastdds/screening/ring_claims.hpp"
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
+#include "common/bus/host/ring_folder.hpp"
 #include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
 
@@ -40,19 +43,21 @@ using OnProblem = std::function<void(const std::string&)>;
 class ScreeningDescriptor : public transports::ChainingTransportDescriptor {
  public:
   ScreeningDescriptor(std::shared_ptr<transports::TransportDescriptorInterface> transport, std::uint32_t largest_sent,
-                      OnProblem problem)
-      : ChainingTransportDescriptor(std::move(transport)), on_problem(std::move(problem)) {
+                      RingClaims our_rings, OnProblem problem)
+      : ChainingTransportDescriptor(std::move(transport)), rings(std::move(our_rings)), on_problem(std::move(problem)) {
     maxMessageSize = largest_sent;
   }
   std::uint32_t max_message_size() const override { return maxMessageSize; }
   transports::TransportInterface* create_transport() const override;
 
+  const RingClaims rings;
   const OnProblem on_problem;
 };
 
 /// A transport that passes on only what an RtpsScreen passes: Fast DDS 2.9 as Debian builds it ends the process (an
 /// assertion) on some datagrams that are no RTPS messages, reads fragments that are not there, and stands still while
-/// it counts to a sequence number that is far away. Reports the first one to `on_problem`.
+/// it counts to a sequence number that is far away. Reports the first one to `on_problem`. Others' claims to rings of
+/// ours are taken out.
 ///
 /// One datagram at a time, though each socket has a thread of its own: in a secured domain Fast DDS 2.9 connects the
 /// handshake of two participants that it discovers at once, by multicast and unicast, through one unguarded scratch
@@ -76,7 +81,10 @@ class ScreeningTransport : public PassingTransport {
   void receive(transports::TransportReceiverInterface* next, const rtps::octet* data, std::uint32_t size,
                const rtps::Locator_t& local, const rtps::Locator_t& remote) override {
     std::unique_lock one_at_a_time(mutex_);
-    if (screen_.passes(std::as_bytes(std::span(data, size)))) return next->OnDataReceived(data, size, local, remote);
+    const auto message = std::as_bytes(std::span(data, size));
+    const auto checked = screen_.passes(message) ? descriptor_.rings.checked(message) : std::nullopt;
+    if (checked && !checked->empty()) data = reinterpret_cast<const rtps::octet*>(checked->data());
+    if (checked) return next->OnDataReceived(data, size, local, remote);
     one_at_a_time.unlock();
     if (descriptor_.on_problem && !reported_.exchange(true))
       descriptor_.on_problem("malformed RTPS datagrams come from " + rtps::IPLocator::toIPv4string(remote) +
@@ -168,10 +176,11 @@ const ParticipantId& server_id() {
 
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
                  dds::DomainParticipantQos& qos) {
+  const std::string rings = options.shared_memory ? ring_folder(options.rings) : "";
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(as_received(shared_memory_transport(options)));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(
-      udp_transport(options, limits), datagram_bytes(options), options.on_problem));
+      udp_transport(options, limits), datagram_bytes(options), RingClaims(rings, ring_id(rings)), options.on_problem));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.
   auto& builtin = qos.wire_protocol().builtin;
   if (options.network.discovery_server.empty()) {

@@ -16,6 +16,8 @@
 
 #include "common/bus/fastdds/c_library.hpp"
 #include "common/bus/fastdds/network_mapping.hpp"
+#include "common/bus/fastdds/qos_mapping.hpp"
+#include "common/bus/host/ring_folder.hpp"
 #include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/ros_graph.hpp"
@@ -34,6 +36,9 @@ namespace {
 constexpr char kNoFreePort[] =
     "every port in shared memory is in use or was left by a killed process; samples go over UDP until the other "
     "processes of this domain have been restarted";
+constexpr char kNoRings[] =
+    "the folder of the rings of frames in /dev/shm cannot be made or belongs to another user too: frames are copied to "
+    "each reader instead; remove it, or name another one with RTD_RINGS";
 constexpr std::uint32_t kMinSegmentMib = 2;  // below it what does not fit is repaired in 20 ms instead
 
 /// Fast DDS's own consumers write colours, and what they quote as it is.
@@ -187,7 +192,7 @@ std::optional<std::uint32_t> free_participant_id(int domain, std::uint32_t first
 
 Participant::Participant(const BusOptions& options, const HostLimits& limits, EndpointRegistry* registry,
                          std::shared_ptr<NodeEndpoints> node)
-    : secured_(options.security.enabled()),
+    : options_(options),
       node_endpoints_(node ? std::move(node) : std::make_shared<NodeEndpoints>()),
       listener_(options, registry) {
   if (options.shm_segment_mib < kMinSegmentMib || options.shm_segment_mib > 1024) {
@@ -199,6 +204,7 @@ Participant::Participant(const BusOptions& options, const HostLimits& limits, En
   factory_ = dds::DomainParticipantFactory::get_shared_instance();
   const DiscoveryScope scope = registry == nullptr ? DiscoveryScope::kMatching : DiscoveryScope::kAll;
   std::tie(participant_, participant_id_) = create_participant(*factory_, options, limits, scope, &listener_);
+  if (options.security.enabled()) hide_shared_memory();
   listener_.start(*participant_, options);
   create_publishers(options.network);
 }
@@ -216,6 +222,19 @@ void Participant::create_publishers(const NetworkOptions& network) {
   subscriber.partition().push_back("");
   subscriber.partition().push_back(host.c_str());
   host_subscriber_ = participant_->create_subscriber(subscriber);
+}
+
+std::string Participant::rings() const {
+  if (!options_.shared_memory) return {};
+  std::string folder = ring_folder(options_.rings);
+  if (folder.empty() && options_.on_problem) options_.on_problem(kNoRings);
+  return folder;
+}
+
+std::string Participant::ring_partitions(const std::string& folder, bool writes) const {
+  if (folder.empty() || options_.rings.empty()) return {};
+  std::string rings = "rings-" + std::to_string(ring_id(folder));
+  return writes ? (options_.network.loopback_only ? "" : host_partition()) + ';' + rings : rings;
 }
 
 WriterId Participant::id() const {

@@ -63,10 +63,11 @@ class Participant {
   }
   /// No listener is called any more.
   void silence() { participant_->set_listener(nullptr); }
-  /// To be called when a writer has been created: secured, its shared memory is for our user only.
-  void writer_created() {
-    if (secured_) hide_shared_memory();
-  }
+  /// Where its endpoints have the rings of frames (place_ring()); empty: nowhere.
+  std::string rings() const;
+  /// The partitions of such an endpoint as Fast DDS's property of that name has them; empty: as all others of the topic.
+  /// In a run readers of frames ask for its rings alone, and what others write costs them nothing.
+  std::string ring_partitions(const std::string& folder, bool writes) const;
   /// Held while Fast DDS creates an endpoint, which reads the size of its type, or deletes a reader: its list of
   /// readers with a liveliness has no lock of its own where it shrinks.
   std::mutex& endpoints_mutex() { return endpoints_mutex_; }
@@ -74,7 +75,7 @@ class Participant {
  private:
   void create_publishers(const NetworkOptions& network);
 
-  const bool secured_;
+  const BusOptions options_;
   const std::shared_ptr<NodeEndpoints> node_endpoints_;
   DiscoveryListener listener_;                              // outlives the participant, which calls it
   std::shared_ptr<dds::DomainParticipantFactory> factory_;  // keeps the vendor's singleton alive

@@ -16,7 +16,7 @@ namespace rtd::bus::fastdds {
 void map_security(const SecurityOptions& security, dds::DomainParticipantQos& qos);
 
 /// Leaves the shared memory that this process uses to its user. Fast DDS lets every user of the host read it, and the
-/// raw frames in it are not encrypted.
+/// raw frames that go through it to readers without our rings are not encrypted.
 void hide_shared_memory();
 
 /// Calls BusOptions::on_problem, once each, for participants that a secured one cannot match. Thread-safe.

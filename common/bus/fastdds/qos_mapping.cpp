@@ -3,8 +3,8 @@
 #include "common/bus/fastdds/qos_mapping.hpp"
 
 #include <cstdint>
+#include <functional>
 #include <string>
-#include <vector>
 
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/network.hpp"
@@ -18,16 +18,6 @@ Duration_t milliseconds(int ms) {
 
 /// A lost sample is noticed and repaired within some ms, not after Fast DDS's default 3 s.
 constexpr int kHeartbeatPeriodMs = 10, kResponseDelayMs = 1;
-
-/// Rings of frames are shared with processes of this host that have the same version of Fast DDS and this function.
-/// Fast DDS itself also shares them with any other version (one of Debian 12 in a container beside one of Debian 13),
-/// which lays the memory out differently: the process that opens it aborts.
-void share_memory(dds::DataSharingQosPolicy& policy) {
-  const std::string host = host_partition();  // "host-" and 16 hexadecimal digits
-  const std::uint64_t hash = std::stoull(host.substr(host.size() - 16), nullptr, 16);
-  const auto id = static_cast<std::uint16_t>(hash ^ hash >> 16U ^ hash >> 32U ^ hash >> 48U ^ kVersion);
-  policy.automatic(std::vector<std::uint16_t>{id});
-}
 
 /// What DataWriterQos and DataReaderQos have in common.
 template <class Qos>
@@ -56,7 +46,7 @@ Qos endpoint_qos(const QosSettings& settings, bool plain) {
   qos.ownership().kind = dds::SHARED_OWNERSHIP_QOS;
   qos.destination_order().kind = dds::BY_RECEPTION_TIMESTAMP_DESTINATIONORDER_QOS;
   if (settings.data_sharing && plain) {
-    share_memory(qos.data_sharing());
+    qos.data_sharing().automatic();
   } else {
     qos.data_sharing().off();
   }
@@ -107,6 +97,16 @@ dds::DataReaderQos reader_qos(const QosSettings& settings, bool plain) {
   set_representations(qos, {dds::XCDR_DATA_REPRESENTATION});
   set_timing(qos, milliseconds(kResponseDelayMs));
   return qos;
+}
+
+std::uint64_t ring_id(const std::string& folder) {
+  return std::hash<std::string>()(host_partition() + folder + std::to_string(kVersion));
+}
+
+void place_ring(dds::DataSharingQosPolicy& policy, const std::string& folder) {
+  if (folder.empty()) return policy.off();
+  policy.automatic(folder);
+  policy.add_domain_id(ring_id(folder));
 }
 
 std::string name_of(dds::QosPolicyId_t id) {

@@ -22,6 +22,7 @@
 #include <string_view>
 #include <utility>
 
+#include "common/bus/host/ring_folder.hpp"
 #include "common/bus/host/shm_folder.hpp"
 
 namespace rtd::bus {
@@ -45,8 +46,12 @@ struct ShmUsers {
   std::vector<UnreadableProcess> unreadable;  ///< what these use is not known
 };
 
+using Folder = std::shared_ptr<const io::Descriptor>;
+
 struct Candidate {
-  std::string name;
+  Folder folder;
+  std::string name;   ///< in the folder
+  std::string shown;  ///< in the folder of shared memory
   FileId id;
   uid_t owner = 0;
   mode_t mode = 0;
@@ -54,6 +59,7 @@ struct Candidate {
   std::uint64_t bytes = 0;
 };
 using Group = std::vector<Candidate>;
+using Groups = std::map<std::string, Group>;
 
 bool has_vendor_name(std::string_view text) {
   return std::any_of(kNameParts.begin(), kNameParts.end(),
@@ -173,22 +179,41 @@ std::string shm_group(const std::string& name) {
   return group;
 }
 
-std::map<std::string, Group> list_groups(const io::Descriptor& folder, const std::string& path) {
-  std::map<std::string, Group> groups;
-  for (const std::string& name : list_folder(path)) {
+/// A folder in another, which is not a link elsewhere; a bad descriptor when it may not be read.
+Folder open_folder(int parent, const std::string& name) {
+  return std::make_shared<io::Descriptor>(openat(parent, name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+}
+
+/// Those of the folder, and of the folders of rings in it. `within`: its name and '/'.
+void add_groups(const Folder& folder, const std::string& within, Groups& groups) {
+  for (const std::string& name : list_folder("/proc/self/fd/" + std::to_string(folder->get()))) {
+    if (within.empty() && name.starts_with(kRingsPrefix)) {
+      add_groups(open_folder(folder->get(), name), name + '/', groups);
+      continue;
+    }
     struct stat file {};
     if (!is_vendor_shm_name(name)) continue;
-    if (fstatat(folder.get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(file.st_mode)) continue;
+    if (fstatat(folder->get(), name.c_str(), &file, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(file.st_mode)) continue;
     const std::time_t changed = std::max(file.st_mtime, file.st_ctime);
     const auto bytes = static_cast<std::uint64_t>(file.st_blocks) * 512;
-    groups[shm_group(name)].push_back({name, {file.st_dev, file.st_ino}, file.st_uid, file.st_mode, changed, bytes});
+    groups[within + shm_group(name)].push_back(
+        {folder, name, within + name, {file.st_dev, file.st_ino}, file.st_uid, file.st_mode, changed, bytes});
   }
-  return groups;
+}
+
+/// Those that runs have left.
+void remove_empty_ring_folders(const Folder& folder, const CleanOptions& options) {
+  for (const std::string& name : list_folder(options.shm_dir)) {
+    struct stat status {};
+    if (!name.starts_with(kRingsPrefix) || fstat(open_folder(folder->get(), name)->get(), &status) != 0) continue;
+    if (std::time(nullptr) - status.st_mtime >= options.min_age.count())
+      unlinkat(folder->get(), name.c_str(), AT_REMOVEDIR);
+  }
 }
 
 /// Locks are seen where processes are not: across PID namespaces.
-bool is_locked(const io::Descriptor& folder, const Candidate& file) {
-  const io::Descriptor opened(openat(folder.get(), file.name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
+bool is_locked(const Candidate& file) {
+  const io::Descriptor opened(openat(file.folder->get(), file.name.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   return opened.get() >= 0 && flock(opened.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
@@ -206,8 +231,7 @@ const UnreadableProcess* hidden_user(const Candidate& file, const ShmUsers& user
 }
 
 /// Why a group must stay; empty: no process needs it.
-std::string reason_to_stay(const Group& group, const ShmUsers& users, const io::Descriptor& folder,
-                           const CleanOptions& options) {
+std::string reason_to_stay(const Group& group, const ShmUsers& users, const CleanOptions& options) {
   for (const Candidate& file : group) {
     if (users.in_use.count(file.id) > 0) return "in use";
   }
@@ -216,30 +240,29 @@ std::string reason_to_stay(const Group& group, const ShmUsers& users, const io::
     if (const UnreadableProcess* process = hidden_user(file, users)) {
       return "process " + std::to_string(process->pid) + " may use it, but its files cannot be inspected";
     }
-    if (is_locked(folder, file)) return "locked by a process";
+    if (is_locked(file)) return "locked by a process";
   }
   return {};
 }
 
 /// Removes the file unless another one has taken its name.
-std::string remove_file(const io::Descriptor& folder, const Candidate& file) {
+std::string remove_file(const Candidate& file) {
   struct stat now {};
-  if (fstatat(folder.get(), file.name.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) return {};  // already removed
+  if (fstatat(file.folder->get(), file.name.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) return {};  // already removed
   if (FileId(now.st_dev, now.st_ino) != file.id) return "replaced meanwhile";
-  if (unlinkat(folder.get(), file.name.c_str(), 0) == 0 || errno == ENOENT) return {};
+  if (unlinkat(file.folder->get(), file.name.c_str(), 0) == 0 || errno == ENOENT) return {};
   return errno == EPERM || errno == EACCES ? "belongs to user " + std::to_string(file.owner) : std::strerror(errno);
 }
 
-void clean_group(const Group& group, std::string reason, const io::Descriptor& folder, const CleanOptions& options,
-                 CleanReport& report) {
+void clean_group(const Group& group, const std::string& reason, const CleanOptions& options, CleanReport& report) {
   for (const Candidate& file : group) {
     std::string why = reason;
-    if (why.empty() && !options.dry_run) why = remove_file(folder, file);
-    (why.empty() ? report.removed : report.left).push_back({file.name, file.bytes, why});
+    if (why.empty() && !options.dry_run) why = remove_file(file);
+    (why.empty() ? report.removed : report.left).push_back({file.shown, file.bytes, why});
   }
 }
 
-bool any_may_go(const std::map<std::string, Group>& groups, const CleanOptions& options) {
+bool any_may_go(const Groups& groups, const CleanOptions& options) {
   return std::any_of(groups.begin(), groups.end(), [&](const auto& entry) {
     return std::none_of(entry.second.begin(), entry.second.end(),
                         [&](const Candidate& file) { return is_young(file, options.min_age); });
@@ -258,17 +281,18 @@ CleanReport remove_shm_leftovers(const CleanOptions& options) {
   CleanReport report;
   const ShmFolder locked(options.shm_dir, std::chrono::milliseconds(100));
   if (!locked.locked()) return report;  // another one's list would be out of date
-  const io::Descriptor& folder = locked.descriptor();
-  const auto groups = list_groups(folder, options.shm_dir);
-  if (groups.empty()) return report;
+  const Folder folder(Folder(), &locked.descriptor());
+  Groups groups;
+  add_groups(folder, "", groups);
   const bool blind = in_first_ipc_namespace(options.proc_dir) && !in_first_pid_namespace(options.proc_dir);
   // Listed before users are looked for: a file that is made later on is not in the list.
   const ShmUsers users = blind || !any_may_go(groups, options) ? ShmUsers{} : find_shm_users(options.proc_dir);
   for (const auto& [name, group] : groups) {
     const std::string reason = blind ? "processes outside this container may use it, run 'rtd doctor --clean' there"
-                                     : reason_to_stay(group, users, folder, options);
-    clean_group(group, reason, folder, options, report);
+                                     : reason_to_stay(group, users, options);
+    clean_group(group, reason, options, report);
   }
+  if (!blind && !options.dry_run) remove_empty_ring_folders(folder, options);
   return report;
 }
 

@@ -79,6 +79,20 @@ void flood_frames(Bus& bus, int) {
   }
 }
 
+/// Writers of frames that come and go while they write as fast as possible.
+void churn_frames(Bus& bus, int) {
+  while (!stop_asked()) {
+    auto writer = bus.writer(topics::kFrame);
+    const auto end = std::chrono::steady_clock::now() + 250ms;
+    for (std::uint64_t seq = 0; std::chrono::steady_clock::now() < end; ++seq) {
+      auto frame = writer.loan();
+      if (seq < 8) fill_frame(*frame, seq);  // all slots
+      frame->seq = seq;
+      writer.write(std::move(frame));
+    }
+  }
+}
+
 /// Answers each message of the topic with a TrackingResult of its seq; inliers shows whether every byte was right,
 /// landmarks which peer this is. The writer of the answers appears when the messages can be received: who sees it may
 /// send.
@@ -153,7 +167,8 @@ void send_large_samples(const BusOptions& options, int megabytes) {
 int run(const std::string& vendor, const std::string& role, std::uint32_t domain, int count) {
   static const std::map<std::string, std::function<void(Bus&, int)>> kRoles = {
       {"send_frames", send_frames},     {"flood_frames", flood_frames},   {"answer_features", answer_features},
-      {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats}};
+      {"answer_frames", answer_frames}, {"leave_history", leave_history}, {"send_heartbeats", send_heartbeats},
+      {"churn_frames", churn_frames}};
   const auto entry = kRoles.find(role);
   BusOptions options;
   options.iceoryx = vendor == "iceoryx";

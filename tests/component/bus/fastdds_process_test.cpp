@@ -8,17 +8,20 @@
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <fastdds/dds/log/Log.hpp>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/host/ring_folder.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
@@ -81,6 +84,48 @@ TEST(FastddsProcesses, leftovers_of_a_killed_writer_are_cleaned_and_those_of_the
     return std::none_of(doomed.begin(), doomed.end(), exists);
   }));
   for (const std::string& file : needed) EXPECT_TRUE(exists(file)) << file;
+}
+
+/// Another process writes frames as fast as it can, with writers that come and go: one that opens its rings may end.
+TEST(FastddsProcesses, a_strangers_rings_are_never_mapped_and_the_camera_of_the_run_is_received_meanwhile) {
+  const RingsOfRun run;
+  BusOptions options;
+  options.vendor = "fastdds";
+  options.domain = test_domain();
+  options.shared_memory = false;
+  const auto beside = connect(options);
+  options.shared_memory = true;
+  options.rings = std::getenv(kRingsVariable);
+  const auto bus = connect(options), camera_bus = connect(options);
+  Collector<msg::RgbdFrame> frames;
+  std::atomic<int> strangers{0}, strange_frames{0};
+  auto camera = camera_bus->writer(topics::kFrame);
+  const auto reader = bus->reader(
+      topics::kFrame,
+      [&, id = camera.id()](const std::shared_ptr<const msg::RgbdFrame>& frame, const WriterId& writer) {
+        writer == id ? frames.push(frame) : void(++strange_frames);
+      });
+  const auto open_reader = beside->reader(
+      topics::kFrame, [&, id = camera.id()](const auto&, const WriterId& writer) { strangers += writer != id; });
+  while (reader.matched() == 0 || camera.matched() == 0) std::this_thread::sleep_for(1ms);
+  const PeerProcess stranger("fastdds", "churn_frames", test_domain());
+  ASSERT_TRUE(eventually([&] { return strangers > 0; }));
+  constexpr int kFrames = 200;
+  int received = 0;
+  for (int seq = 0; seq < kFrames; ++seq) {
+    auto frame = camera.loan();
+    fill_frame(*frame, static_cast<std::uint64_t>(seq));
+    camera.write(std::move(frame));
+    if (frames.try_next(200ms)) ++received;
+    std::this_thread::sleep_for(10ms);
+  }
+  EXPECT_GE(received, 0.95 * kFrames) << "beside " << strangers << " frames of the stranger";
+  EXPECT_EQ(strange_frames, 0) << "readers of a run have its rings alone";
+  std::istringstream maps(maps_of(getpid()));
+  for (std::string line; std::getline(maps, line);) {
+    const bool is_ring = line.find("fast_datasharing") != std::string::npos;
+    EXPECT_TRUE(!is_ring || line.find(options.rings + '/') != std::string::npos) << line;
+  }
 }
 
 /// Output and exit code of bus_peer in a mount namespace whose /dev/shm holds `size`; exit code 77: not permitted here.

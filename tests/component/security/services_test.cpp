@@ -35,7 +35,7 @@ class SecuredServicesTest : public ::testing::Test {
   }
   static std::set<std::string> set_of(const std::vector<std::string>& topics) { return {topics.begin(), topics.end()}; }
 
-  /// The raw frames' shared memory is for its user only. Waits for it to appear.
+  /// The raw frames are in a folder for their user only, and so is the rest of the shared memory. Waits for them.
   bool frames_are_hidden(const std::string& camera_log) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < give_up) {
@@ -44,10 +44,14 @@ class SecuredServicesTest : public ::testing::Test {
       const pid_t pid = pid_in(text_of(camera_log));
       if (pid < 0) continue;
       const std::string maps = text_of("/proc/" + std::to_string(pid) + "/maps");
-      if (!std::regex_search(maps, memory, std::regex("/dev/shm/fast_datasharing_\\S+"))) continue;
+      if (!std::regex_search(maps, memory, std::regex("(/dev/shm/rtd_rings_\\S+)/fast_datasharing_"))) continue;
+      const std::string folder = memory[1];
+      if (!std::regex_search(maps, memory, std::regex("/dev/shm/fast(rtps|dds)_[0-9a-f]+"))) continue;
       const auto others = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
-      const auto perms = std::filesystem::status(memory.str()).permissions();
-      if ((perms & others) == std::filesystem::perms::none) return true;
+      const auto hidden = [&](const std::string& path) {
+        return (std::filesystem::status(path).permissions() & others) == std::filesystem::perms::none;
+      };
+      if (hidden(folder) && hidden(memory.str())) return true;
     }
     return false;
   }

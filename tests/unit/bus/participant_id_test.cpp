@@ -8,7 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +15,6 @@
 #include <fstream>
 #include <future>
 #include <memory>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -163,47 +161,6 @@ TEST(ParticipantOnTheBus, two_of_one_process_announce_their_liveliness_at_once_a
     std::fputs("the participants wait for each other forever\n", stderr);
     std::_Exit(EXIT_FAILURE);
   }
-}
-
-/// Whether two endpoints of this process have mapped one file of a ring of frames.
-bool share_a_ring() {
-  std::ifstream maps("/proc/self/maps");
-  std::multiset<std::string> rings;
-  for (std::string line; std::getline(maps, line);) {
-    const std::size_t name = line.find("fast_datasharing");
-    if (name != std::string::npos) rings.insert(line.substr(name));
-  }
-  return std::any_of(rings.begin(), rings.end(), [&](const std::string& ring) { return rings.count(ring) > 1; });
-}
-
-/// Sends one frame from a writer to a reader with these policies of data sharing.
-bool frame_goes_through_a_ring(const dds::DataSharingQosPolicy& writing, const dds::DataSharingQosPolicy& reading) {
-  BusOptions options;
-  options.domain = kDomain;
-  const auto participant = std::make_shared<Participant>(options, read_host_limits());
-  const auto frames = [] { return create_codec(MessageTraits<msg::RgbdFrame>::kId); };
-  dds::DataReaderQos wanted = reader_qos(qos_settings(QosProfile::kRawFrame), true);
-  dds::DataWriterQos offered = writer_qos(qos_settings(QosProfile::kRawFrame), true);
-  wanted.data_sharing() = reading;
-  offered.data_sharing() = writing;
-  std::promise<void> received;
-  FastddsReader reader(participant, frames(), "rtd/frame", wanted, [&](auto, auto) { received.set_value(); }, {});
-  FastddsWriter writer(participant, frames(), "rtd/frame", offered, {});
-  while (writer.matched() == 0 || reader.matched() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  const auto frame = std::make_unique<msg::RgbdFrame>();
-  EXPECT_TRUE(writer.write(frame.get()));
-  EXPECT_EQ(received.get_future().wait_for(std::chrono::seconds(10)), std::future_status::ready);
-  return share_a_ring();
-}
-
-/// Another version of Fast DDS would end a process of ours by sharing a ring with it.
-TEST(RingsOfFrames, are_for_our_own_processes_and_others_receive_frames_without_them) {
-  const auto ours = reader_qos(qos_settings(QosProfile::kRawFrame), true).data_sharing();
-  const dds::DataSharingQosPolicy usual;  // with all of the host
-  EXPECT_TRUE(frame_goes_through_a_ring(ours, ours));
-  EXPECT_TRUE(frame_goes_through_a_ring(usual, usual));
-  EXPECT_FALSE(frame_goes_through_a_ring(usual, ours));
-  EXPECT_FALSE(frame_goes_through_a_ring(ours, usual));
 }
 
 }  // namespace

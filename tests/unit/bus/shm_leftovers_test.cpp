@@ -106,6 +106,34 @@ TEST_F(ShmLeftovers, of_a_killed_process_go_and_those_of_a_living_one_stay) {
   EXPECT_TRUE(fs::exists(path("fast_datasharing_01.0f.bb_0.0.3.3")));
 }
 
+TEST_F(ShmLeftovers, in_folders_of_rings_go_too_and_then_the_empty_folders) {
+  fs::create_directory(path("rtd_rings_1000"));
+  make("rtd_rings_1000/fast_datasharing_01.0f.aa_0.0.3.3");
+  make("rtd_rings_1000/fast_datasharing_01.0f.bb_0.0.3.3");
+  make("rtd_rings_1000/notes");
+  fs::create_directory(path("rtd_rings_1000_aBcDeF"));
+  make("rtd_rings_1000_aBcDeF/fast_datasharing_01.0f.cc_0.0.3.3");
+  const Child living([&] { map("rtd_rings_1000/fast_datasharing_01.0f.bb_0.0.3.3"); });
+  const CleanReport report = clean();
+  EXPECT_THAT(names(report.removed), UnorderedElementsAre("rtd_rings_1000/fast_datasharing_01.0f.aa_0.0.3.3",
+                                                          "rtd_rings_1000_aBcDeF/fast_datasharing_01.0f.cc_0.0.3.3"));
+  EXPECT_EQ(reason(report, "rtd_rings_1000/fast_datasharing_01.0f.bb_0.0.3.3"), "in use");
+  EXPECT_TRUE(fs::exists(path("rtd_rings_1000/notes")));
+  EXPECT_FALSE(fs::exists(path("rtd_rings_1000_aBcDeF")));
+
+  fs::create_directory(path("rtd_rings_1001"));
+  clean(3600);
+  EXPECT_TRUE(fs::exists(path("rtd_rings_1001"))) << "a service may be about to use it";
+}
+
+TEST_F(ShmLeftovers, behind_a_link_are_not_touched) {
+  fs::create_directory(path("elsewhere"));
+  make("elsewhere/fast_datasharing_01.0f.aa_0.0.3.3");
+  fs::create_symlink(path("elsewhere"), path("rtd_rings_1000"));
+  EXPECT_THAT(clean().removed, IsEmpty());
+  EXPECT_TRUE(fs::exists(path("rtd_rings_1000/fast_datasharing_01.0f.aa_0.0.3.3")));
+}
+
 TEST_F(ShmLeftovers, files_of_one_port_stay_together) {
   for (const char* name : {"fastrtps_port7412", "fastrtps_port7412_el", "sem.fastrtps_port7412_mutex"}) make(name);
   for (const char* name : {"fastrtps_port7415", "sem.fastrtps_port7415_mutex"}) make(name);
