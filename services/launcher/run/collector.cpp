@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/collector.hpp"
 
-#include <atomic>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
@@ -37,46 +36,20 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
     peers_.believe_only("filter", filter_);
     peers_.believe_only("slam", slam_);
   }
-  readers_ = subscribe();
+  const auto add_message = [this](const auto& message) { add(*message); };
+  tracking_reader_ = bus.reader(bus::topics::kTracking, add_message, slam_->callbacks());
+  features_reader_ = bus.reader(bus::topics::kFeatures, add_message, filter_->callbacks());
+  status_reader_ =
+      bus.reader(bus::topics::kStatus,
+                 [this](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
+                   add(*status, writer);
+                 });
+  if (with_masks_) masks_reader_ = bus.reader(bus::topics::kPersonMasks, add_message);
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
-std::unique_ptr<Collector::Readers> Collector::subscribe() {
-  auto readers = std::make_unique<Readers>();
-  const auto recipient = readers->recipient = std::make_shared<Recipient>();
-  recipient->collector = this;
-  const auto add = [recipient](const auto& message) {
-    deliver(*recipient, [&](Collector& collector) { collector.add(*message); });
-  };
-  readers->tracking = bus_.reader(bus::topics::kTracking, add, slam_->callbacks());
-  readers->features = bus_.reader(bus::topics::kFeatures, add, filter_->callbacks());
-  readers->status =
-      bus_.reader(bus::topics::kStatus,
-                  [recipient](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
-                    deliver(*recipient, [&](Collector& collector) { collector.add(*status, writer); });
-                  });
-  if (with_masks_) readers->masks = bus_.reader(bus::topics::kPersonMasks, add);
-  if (reads_frames_) subscribe_to_frames(*readers);
-  return readers;
-}
-
-void Collector::subscribe_to_frames(Readers& readers) {
-  readers.frames = bus::FrameReader(
-      bus_,
-      [recipient = readers.recipient](const auto& frame) {
-        deliver(*recipient, [&](Collector& collector) { collector.add_image(frame); });
-      },
-      camera_->callbacks());
-}
-
-void Collector::deliver(Recipient& recipient, const std::function<void(Collector&)>& action) {
-  const std::lock_guard lock(recipient.mutex);
-  if (recipient.collector != nullptr) action(*recipient.collector);
-}
-
 void Collector::read_frames() {
-  reads_frames_ = true;
-  subscribe_to_frames(*readers_);
+  frame_reader_ = bus::FrameReader(bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
 }
 
 std::optional<double> Collector::metric_of(const std::string& service, const std::string& metric) const {
@@ -129,24 +102,13 @@ service::ProcessGone Collector::process_gone() const {
   return [processes = processes_](const bus::ParticipantId& connection) { return processes->gone(connection); };
 }
 
-void Collector::subscribe_again() {
-  {
-    const std::lock_guard lock(readers_->recipient->mutex);
-    readers_->recipient->collector = nullptr;
-  }
-  static std::atomic<Readers*> kept = nullptr;
-  readers_->kept_before = kept;
-  kept = readers_.release();
-  readers_ = subscribe();
-}
-
 Collector::~Collector() {
   images_.close();
   encoder_.join();
 }
 
 bool Collector::connected(bool with_filter) const {
-  return readers_->tracking.matched() > 0 && (!with_filter || readers_->features.matched() > 0);
+  return tracking_reader_.matched() > 0 && (!with_filter || features_reader_.matched() > 0);
 }
 
 std::string Collector::active_services(const Tolerated& tolerated) const {

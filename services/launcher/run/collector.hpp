@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -47,9 +46,6 @@ class Collector {
   bool tracked_any() const;
   bool any_frame() const;  ///< the camera has given one
   std::string camera_message() const;
-  /// Subscribes again after a thread that reads was lost (process/lost_lock.hpp). The readers up to now are kept for
-  /// ever, for they would wait for that thread, but have no receiver any more.
-  void subscribe_again();
   /// The run ends: frames of another source than its own no longer count.
   void close();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
@@ -58,24 +54,6 @@ class Collector {
   static constexpr std::size_t kMaxJudgedFrames = 5000;  ///< about 15 kB each
 
  private:
-  /// What the readers' callbacks hold: a reader that is kept for ever may outlive the collector.
-  struct Recipient {
-    std::mutex mutex;
-    Collector* collector = nullptr;  ///< null: no receiver
-  };
-  struct Readers {
-    Readers* kept_before = nullptr;  ///< of those that are kept for ever, the one before
-    std::shared_ptr<Recipient> recipient;
-    bus::Reader<msg::TrackingResult> tracking;
-    bus::Reader<msg::FeatureFrame> features;
-    bus::Reader<msg::ServiceStatus> status;
-    bus::Reader<msg::Image> masks;
-    bus::FrameReader frames;
-  };
-
-  std::unique_ptr<Readers> subscribe();
-  void subscribe_to_frames(Readers& readers);
-  static void deliver(Recipient& recipient, const std::function<void(Collector&)>& action);
   void add(const msg::TrackingResult& result);
   void add(const msg::FeatureFrame& features);
   void add(const msg::ServiceStatus& status, const bus::WriterId& writer);
@@ -92,7 +70,7 @@ class Collector {
   RecordBuilder builder_;
   SampleKeeper samples_;
   std::uint64_t total_;
-  bool keep_features_, with_masks_, reads_frames_ = false;
+  bool keep_features_, with_masks_;
   std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
   struct Image {
     std::uint64_t seq = 0;  ///< within the run
@@ -100,7 +78,11 @@ class Collector {
   };
   concurrency::BoundedQueue<Image> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
-  std::unique_ptr<Readers> readers_;
+  bus::Reader<msg::TrackingResult> tracking_reader_;
+  bus::Reader<msg::FeatureFrame> features_reader_;
+  bus::Reader<msg::ServiceStatus> status_reader_;
+  bus::Reader<msg::Image> masks_reader_;
+  bus::FrameReader frame_reader_;
 };
 
 }  // namespace rtd::launcher

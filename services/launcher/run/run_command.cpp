@@ -11,8 +11,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
+#include <optional>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/bus/host/ring_folder.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/input_file.hpp"
@@ -27,7 +29,6 @@
 #include "common/service/trace.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/trace_file.hpp"
-#include "services/launcher/process/lost_lock.hpp"
 #include "services/launcher/run/frame_verdict.hpp"
 #include "services/launcher/run/run_session.hpp"
 #include "services/launcher/run/run_setup.hpp"
@@ -131,9 +132,10 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   service::InterruptSignals signals;
   Terminal terminal = open_terminal(setup.quiet);
   service::init_logging("launcher", "warn");
-  survive_lost_locks();
   service::BoundedEnd end("rtd run");
   const std::shared_ptr<bus::Bus> bus = bus::connect(setup.bus_options);
+  std::optional<bus::RingsOfRun> rings;
+  if (setup.vendors_of.empty()) rings.emplace();  // what another vendor sends is in no ring
   print_setup(setup, terminal);
   RunSession session(setup, *bus, signals, terminal);
 
@@ -156,10 +158,6 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   session.keep_viewer();
   end.begin(result.code,
             outcome == RunOutcome::kInterrupted ? service::BoundedEnd::kWhenAsked : service::BoundedEnd::kByItself);
-  if (lost_locks() > 0) {  // threads that stand still cannot be waited for
-    std::cout.flush();
-    std::_Exit(result.code);
-  }
   return result;
 }
 

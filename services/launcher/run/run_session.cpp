@@ -9,7 +9,6 @@
 #include "common/io/input_file.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/launcher/process/lost_lock.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -141,7 +140,6 @@ void RunSession::supervise(const ServicePlan& source) {
       supervisor_.stop(time, again ? milliseconds(0) : interrupt_grace(), RunOutcome::kInterrupted);
     }
     supervisor_.update(time);
-    watch_locks();
     stop_when_decided(time);
     if (!plays && !supervisor_.stopping() && misses_no_result(time) && !waits_for_page(source)) {
       collector_.read_frames();
@@ -152,13 +150,6 @@ void RunSession::supervise(const ServicePlan& source) {
     while (const auto notice = collector_.take_notice()) events_.push_back(*notice);  // the terminal shows the warning
     if (plays && !supervisor_.stopping()) terminal_.status(format_live_status(collector_.live()), time);
   }
-}
-
-void RunSession::watch_locks() {
-  if (lost_locks() == lost_locks_) return;
-  lost_locks_ = lost_locks();
-  note("a service died while it held a lock in shared memory: subscribed again");
-  collector_.subscribe_again();
 }
 
 /// A user who names a map file wants the complete map in it, however large it is.

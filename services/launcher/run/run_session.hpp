@@ -51,7 +51,6 @@ class RunSession {
   std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
-  void watch_locks();
   void note(const std::string& text);
   ServicePlan counted(ServicePlan plan);
 
@@ -70,7 +69,6 @@ class RunSession {
   std::string viewer_line_;  ///< its addresses, as it printed them
   bool page_was_open_ = false, wait_shown_ = false;
   int slam_restarts_ = 0, slam_worlds_lost_ = 0;
-  std::uint64_t lost_locks_ = 0;
 };
 
 }  // namespace rtd::launcher

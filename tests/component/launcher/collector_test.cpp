@@ -98,17 +98,6 @@ TEST_F(CollectorTest, keeps_the_masks_of_people_in_its_pictures_when_it_is_to) {
   EXPECT_EQ(record.samples[0].masks.columns, 16);
 }
 
-TEST_F(CollectorTest, continues_after_it_has_subscribed_again) {
-  for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    if (seq == kFrames / 2) collector_.subscribe_again();
-    publish(seq);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  const run_record::RunRecord record = record_when_complete(6);
-  EXPECT_EQ(record.frames.size(), kFrames);
-  EXPECT_EQ(record.samples.size(), 6U);
-}
-
 TEST_F(CollectorTest, receives_from_filter_and_slam_before_the_first_frame) {
   EXPECT_TRUE(collector_.connected());
   tracking_ = {};
@@ -122,10 +111,8 @@ TEST_F(CollectorTest, subscribes_to_frames_when_asked) {
   const bus::Writer<msg::RgbdFrame> frames = camera->writer(bus::topics::kFrame);
   FrameList store;
   Collector collector(*camera, store, {});
-  collector.subscribe_again();
   EXPECT_EQ(frames.matched(), 0) << "a camera that waits for the launcher waits for this reader";
   collector.read_frames();
-  collector.subscribe_again();
   EXPECT_GE(frames.matched(), 1);
 }
 
