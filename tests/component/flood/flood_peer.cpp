@@ -3,7 +3,8 @@
 //
 // An attacker without keys: flood_peer VENDOR DOMAIN RATE_HZ [TOPIC]. Writes a message to every topic and sends a
 // request to every command RATE_HZ times a second until SIGTERM, then prints how many; with TOPIC only to topics whose
-// name contains it, and frames as often as anything else. What it writes is well-formed: in turn
+// name contains it, and frames as often as anything else. A RATE_HZ of 0: without a pause, by writers and readers that
+// come and go four times a second. What it writes is well-formed: in turn
 // hostile values in one field after the other, and copies of what the real services have just sent with one thing
 // changed.
 #include <signal.h>
@@ -160,16 +161,26 @@ std::vector<std::unique_ptr<Target>> make_targets(bus::Bus& bus, const std::stri
 
 /// Does not return: with Fast DDS 2.9 the reader of frames that were overwritten before they were read may never end.
 [[noreturn]] void flood(bus::Bus& bus, double rate_hz, const std::string& topics) {
-  const auto targets = make_targets(bus, topics);
-  const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(1 / rate_hz));
-  auto next = std::chrono::steady_clock::now();
+  using std::chrono::duration;
+  auto targets = make_targets(bus, topics);
+  const bool churns = rate_hz == 0;
+  const auto period = std::chrono::duration_cast<std::chrono::nanoseconds>(duration<double>(churns ? 0 : 1 / rate_hz));
+  auto next = std::chrono::steady_clock::now(), made = next;
+  std::uint64_t written = 0;
+  const auto count = [&] {
+    for (const auto& target : targets) written += target->written();
+  };
   for (std::uint64_t turn = 0; stopped() == 0; ++turn) {
     for (const auto& target : targets)
       if (stopped() == 0) target->attack(turn);
     std::this_thread::sleep_until(next += period);
+    if (!churns || std::chrono::steady_clock::now() - made < std::chrono::milliseconds(250)) continue;
+    count();
+    targets.clear();
+    targets = make_targets(bus, topics);
+    made = std::chrono::steady_clock::now();
   }
-  std::uint64_t written = 0;
-  for (const auto& target : targets) written += target->written();
+  count();
   std::printf("%llu messages written\n", static_cast<unsigned long long>(written));
   std::fflush(stdout);
   std::_Exit(0);
