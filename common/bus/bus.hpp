@@ -15,6 +15,7 @@
 #include "common/bus/command_book.hpp"
 #include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
+#include "common/bus/traffic.hpp"
 
 namespace rtd::bus {
 
@@ -45,15 +46,16 @@ template <class T>
 class Writer {
  public:
   Writer() = default;
-  explicit Writer(std::unique_ptr<WriterBackend> backend) : backend_(std::move(backend)) {}
+  Writer(std::unique_ptr<WriterBackend> backend, Traffic::Sent sent)
+      : backend_(std::move(backend)), sent_(std::move(sent)) {}
   explicit operator bool() const { return backend_ != nullptr; }
 
   /// Hands the message to the bus. False when the bus could not take it (history full past the blocking time, shut
   /// down).
-  bool write(const T& message) { return backend_->write(&message); }
+  bool write(const T& message) { return counted(backend_->write(&message)); }
   /// A slot to build a fixed-size message in place. Its content is undefined until filled: fill every field.
   Loan<T> loan() requires MessageTraits<T>::kPlain { return Loan<T>(backend_.get(), backend_->loan()); }
-  bool write(Loan<T>&& loan) { return backend_->write_loaned(loan.release()); }
+  bool write(Loan<T>&& loan) { return counted(backend_->write_loaned(loan.release())); }
   /// Number of readers matched now. Each side matches on its own: on a volatile topic, what is written before the
   /// reader too has matched may never reach it, so wait for the other side's heartbeat where the first
   /// message matters.
@@ -64,7 +66,13 @@ class Writer {
   WriterId id() const { return backend_->id(); }
 
  private:
+  bool counted(bool written) {
+    if (written) ++*sent_;
+    return written;
+  }
+
   std::unique_ptr<WriterBackend> backend_;
+  Traffic::Sent sent_;
 };
 
 /// Receives T from one topic until destroyed. The callback runs on a bus thread, one call at a time per reader: push to
@@ -120,14 +128,16 @@ class TopicCounters {
 /// Throws BusError with cause and fix when the backend cannot start. Thread-safe.
 class Bus {
  public:
-  explicit Bus(std::shared_ptr<BusBackend> backend, std::string robot = {})
-      : backend_(std::move(backend)), robot_(std::move(robot)) {}
+  explicit Bus(std::shared_ptr<BusBackend> backend, std::string robot = {},
+               std::shared_ptr<Traffic> traffic = std::make_shared<Traffic>())
+      : traffic_(std::move(traffic)), backend_(std::move(backend)), robot_(std::move(robot)) {}
 
   template <class T>
   Writer<T> writer(const Topic<T>& topic, StatusCallbacks callbacks = {}) {
     const std::string name = topic_of_robot(topic.name, robot_);
     return Writer<T>(backend_->create_writer(MessageTraits<T>::kId, name, topic.profile,
-                                             counters_.count(name, std::move(callbacks))));
+                                             counters_.count(name, std::move(callbacks))),
+                     traffic_->output(name));
   }
 
   /// `on_message` takes the message, a shared_ptr<const T>, and if it wants to the WriterId of its source.
@@ -144,8 +154,10 @@ class Bus {
     };
     const std::string name = topic_of_robot(topic.name, robot_);
     constexpr MessageId kId = MessageTraits<T>::kId;
-    return Reader<T>(backend_->create_reader(kId, name, topic.profile, counters_.screen(kId, name, std::move(erased)),
-                                             counters_.count(name, std::move(callbacks))));
+    const std::shared_ptr<Input> input = traffic_->input(name, static_cast<bool>(callbacks.accepts));
+    return Reader<T>(backend_->create_reader(kId, name, topic.profile,
+                                             input->counting(counters_.screen(kId, name, std::move(erased))),
+                                             input->counting(counters_.count(name, std::move(callbacks)))));
   }
 
   /// One end of a ROS 2 service by its names on the wire (common/bus/commands.hpp offers and calls them).
@@ -162,12 +174,17 @@ class Bus {
   /// A tf frame of this robot.
   std::string frame(const std::string& name) const { return frame_of_robot(name, robot_); }
   /// The same connection for the topics of another robot. Counts its troubles for itself.
-  std::shared_ptr<Bus> of_robot(const std::string& robot) const { return std::make_shared<Bus>(backend_, robot); }
+  std::shared_ptr<Bus> of_robot(const std::string& robot) const {
+    return std::make_shared<Bus>(backend_, robot, traffic_);
+  }
   /// Topics on which samples were lost or rejected or peers or messages refused since the connection began.
   std::map<std::string, TopicTrouble> troubles() const { return counters_.troubles(); }
+  /// What the writers and readers of this connection have sent and received, for all robots.
+  const Traffic& traffic() const { return *traffic_; }
 
  private:
   TopicCounters counters_;
+  const std::shared_ptr<Traffic> traffic_;
   std::shared_ptr<BusBackend> backend_;
   const std::shared_ptr<CommandBook> commands_ = std::make_shared<CommandBook>();
   const std::string robot_;

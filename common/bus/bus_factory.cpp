@@ -3,6 +3,7 @@
 #include "common/bus/bus_factory.hpp"
 
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "common/bus/host/port_check.hpp"
@@ -138,16 +139,20 @@ std::vector<std::string> dds_vendors() {
 
 std::shared_ptr<Bus> connect(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
-  if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options), options.robot);
+  const auto traffic = options.traffic ? options.traffic : std::make_shared<Traffic>();
+  if (!options.security.enabled()) return std::make_shared<Bus>(vendor.create(options), options.robot, traffic);
   security::Enclave enclave = require_enclave(options);
-  return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)), options.robot);
+  return std::make_shared<Bus>(guard(vendor.create(options), std::move(enclave)), options.robot, traffic);
 }
 
 std::shared_ptr<RawBus> connect_raw(const BusOptions& options) {
   const Vendor& vendor = vendor_of(options);
-  if (!options.security.enabled()) return vendor.create_raw(options);
-  security::Enclave enclave = require_enclave(options);
-  return guard(vendor.create_raw(options), std::move(enclave));
+  std::optional<security::Enclave> enclave;
+  if (options.security.enabled()) enclave = require_enclave(options);
+  std::shared_ptr<RawBus> bus = vendor.create_raw(options);
+  if (enclave) bus = guard(std::move(bus), std::move(*enclave));
+  bus->count_in(options.traffic);
+  return bus;
 }
 
 }  // namespace rtd::bus

@@ -77,6 +77,9 @@ struct BusOptions {
   /// Called with one line for each problem that keeps other participants from being matched, e.g. a participant of
   /// another vendor in a secured domain. Runs on a bus thread, maybe several times: be brief, do not call the bus.
   std::function<void(const std::string& problem)> on_problem = {};
+  /// Where the connection counts what it sends and receives. None: typed endpoints count for themselves, raw ones do
+  /// not.
+  std::shared_ptr<Traffic> traffic;
 
   void bind(auto& binder) {
     binder.field("vendor", vendor, "DDS implementation, else RTD_DDS: " + vendor_names()).option("--dds", "Network");

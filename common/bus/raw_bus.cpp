@@ -3,6 +3,7 @@
 #include "common/bus/raw_bus.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/bus/robot.hpp"
 #include "common/bus/topic_roles.hpp"
@@ -10,6 +11,50 @@
 #include "common/msg/largest_sample.hpp"
 
 namespace rtd::bus {
+namespace {
+
+class CountedRawWriter : public RawWriter {
+ public:
+  CountedRawWriter(std::unique_ptr<RawWriter> writer, Traffic::Sent sent)
+      : writer_(std::move(writer)), sent_(std::move(sent)) {}
+  bool write(std::span<const std::byte> cdr, std::int64_t source_ns) override {
+    const bool written = writer_->write(cdr, source_ns);
+    if (written) ++*sent_;
+    return written;
+  }
+  int matched() const override { return writer_->matched(); }
+  bool wait_acknowledged(int timeout_ms) override { return writer_->wait_acknowledged(timeout_ms); }
+
+ private:
+  const std::unique_ptr<RawWriter> writer_;
+  const Traffic::Sent sent_;
+};
+
+RawHandlers counted(RawHandlers handlers, const std::shared_ptr<Input>& input) {
+  StatusCallbacks counting = input->counting(std::move(handlers.status));
+  handlers.on_sample = [receive = std::exchange(counting.accepts, nullptr),
+                        next = std::move(handlers.on_sample)](RawSample sample) {
+    receive(sample.writer);
+    if (next) next(std::move(sample));
+  };
+  handlers.status = std::move(counting);
+  return handlers;
+}
+
+}  // namespace
+
+std::unique_ptr<RawReader> RawBus::reader(const RawTopic& topic, const RawReaderOptions& options,
+                                          RawHandlers handlers) {
+  if (traffic_) handlers = counted(std::move(handlers), traffic_->input(topic.name, false));
+  return make_reader(topic, options, std::move(handlers));
+}
+
+std::unique_ptr<RawWriter> RawBus::writer(const RawTopic& topic, const RawWriterOptions& options,
+                                          StatusCallbacks callbacks) {
+  auto writer = make_writer(topic, options, std::move(callbacks));
+  if (!traffic_) return writer;
+  return std::make_unique<CountedRawWriter>(std::move(writer), traffic_->output(topic.name));
+}
 
 std::optional<RawLoss> SequenceGaps::next(const WriterId& writer, std::int64_t sequence) {
   const auto [known, is_first] = newest_.try_emplace(writer, sequence);

@@ -186,13 +186,21 @@ class RawBus : public CallBackend {
   /// create and destroy readers and writers. Empty ends it: afterwards it does not run.
   virtual void watch(Watcher watcher) = 0;
   /// Throws BusError: refused, or the topic is in use with another type.
-  virtual std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
-                                            RawHandlers handlers) = 0;
-  virtual std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
-                                            StatusCallbacks callbacks = {}) = 0;
+  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options, RawHandlers handlers);
+  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
+                                    StatusCallbacks callbacks = {});
+  /// Readers and writers that are made from now on count there. None: they do not count.
+  void count_in(std::shared_ptr<Traffic> traffic) { traffic_ = std::move(traffic); }
+
+ protected:
+  virtual std::unique_ptr<RawReader> make_reader(const RawTopic& topic, const RawReaderOptions& options,
+                                                 RawHandlers handlers) = 0;
+  virtual std::unique_ptr<RawWriter> make_writer(const RawTopic& topic, const RawWriterOptions& options,
+                                                 StatusCallbacks callbacks) = 0;
 
  private:
   const std::string vendor_;
+  std::shared_ptr<Traffic> traffic_;
 };
 
 /// As connect(). In process, raw endpoints meet raw endpoints only: typed messages have no bytes there.

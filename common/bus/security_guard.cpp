@@ -65,13 +65,13 @@ class GuardedRawBus : public RawBus {
   std::vector<TopicReader> readers() const override { return bus_->readers(); }
   std::map<ParticipantId, std::string> participants() const override { return bus_->participants(); }
   void watch(Watcher watcher) override { bus_->watch(std::move(watcher)); }
-  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
-                                    RawHandlers handlers) override {
+  std::unique_ptr<RawReader> make_reader(const RawTopic& topic, const RawReaderOptions& options,
+                                         RawHandlers handlers) override {
     guard_.require_subscribe(topic.name);
     return bus_->reader(topic, options, std::move(handlers));
   }
-  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
-                                    StatusCallbacks callbacks) override {
+  std::unique_ptr<RawWriter> make_writer(const RawTopic& topic, const RawWriterOptions& options,
+                                         StatusCallbacks callbacks) override {
     guard_.require_publish(topic.name);
     return bus_->writer(topic, options, std::move(callbacks));
   }

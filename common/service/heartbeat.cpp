@@ -92,7 +92,8 @@ Heartbeat::Heartbeat(bus::Bus& bus, std::string service_name, StopToken& stop, S
       started_ns_(realtime_ns()),
       looked_ns_(monotonic_ns()),
       clocks_(service_name, PeerClocks::this_host_id()),
-      peers_(process_gone()) {
+      peers_(process_gone()),
+      inputs_(bus::topic_of_robot(bus::topics::kStatus.name, bus.robot())) {
   own_.service = std::move(service_name);
   own_.metrics.push_back({metric::kHostId, PeerClocks::this_host_id()});
   own_.metrics.push_back({metric::kHostNamePrefix + host_name(), 1});
@@ -119,6 +120,7 @@ void Heartbeat::loop() {
     forgive_standstill(now_ns);
     forget_silent(now_ns);
     bool changed = check_peers();
+    changed = check_inputs() || changed;
     changed = check_progress() || changed;
     changed = check_topics() || changed;
     if (changed || turn % (kPeriod / kLookPeriod) == 0) publish();
@@ -134,6 +136,7 @@ void Heartbeat::forgive_standstill(std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   progress_.forgive(stood_still_ns);
   peers_.forgive(stood_still_ns);
+  inputs_.forgive();
 }
 
 void Heartbeat::forget_silent(std::int64_t now_ns) {
@@ -280,11 +283,6 @@ void Heartbeat::idle() {
   progress_.idle();
 }
 
-void Heartbeat::frame_received() {
-  const std::lock_guard lock(mutex_);
-  frames_.received();
-}
-
 void Heartbeat::watch_progress(std::chrono::milliseconds limit) {
   const std::lock_guard lock(mutex_);
   progress_.set_limit(std::chrono::nanoseconds(limit).count());
@@ -321,14 +319,20 @@ bool Heartbeat::check_peers() {
   return changed;
 }
 
+/// True when an input fell silent, or is not any more.
+bool Heartbeat::check_inputs() {
+  const auto& traffic = bus_.traffic();
+  Sender own{own_name_, bus::participant_of(writer_.id()), true, traffic.sent()};
+  const std::lock_guard lock(mutex_);
+  const auto inputs = stop_.stop_requested() ? SilentInputs::Inputs() : traffic.inputs();
+  return inputs_.look(inputs, std::move(own), peers_, monotonic_ns());
+}
+
 /// True when the worker got stuck or free.
 bool Heartbeat::check_progress() {
-  const auto frames_sent = metric_on_this_host("camera", metric::kFramesPublished);
   const std::lock_guard lock(mutex_);
-  const std::int64_t now_ns = monotonic_ns(), stuck_ns = progress_.stuck_ns(now_ns);
-  const bool receives_nothing = frames_.receives_nothing(now_ns, frames_sent);
-  std::string cause;
-  if (receives_nothing) cause = "it receives no frames, although the camera sends them";
+  const std::int64_t stuck_ns = progress_.stuck_ns(monotonic_ns());
+  std::string cause = inputs_.lost();
   if (stuck_ns > 0) cause = "its worker makes no progress";
   if (stop_.stop_requested()) cause.clear();
   if (cause.empty() == stuck_.empty()) return false;
@@ -368,6 +372,11 @@ msg::ServiceStatus Heartbeat::current_status() {
     }
   }
   for (const auto& [topic, trouble] : troubles_) add_troubles(topic, trouble, status.metrics);
+  for (const auto& [topic, sent] : bus_.traffic().sent()) {
+    if (bus::concerns_robot(topic, bus_.robot()))
+      status.metrics.push_back({metric::kSentPrefix + topic, static_cast<double>(sent)});
+  }
+  inputs_.add_to(status);
   if (!stuck_.empty()) {
     status.state = msg::ServiceState::kDegraded;
     status.message = "hung: " + stuck_;

@@ -11,11 +11,12 @@ namespace rtd::service::metric {
 // Every service
 inline constexpr char kHostId[] = "host_id";                        ///< the same number for all processes of a host
 inline constexpr char kHostNamePrefix[] = "host_name.";             ///< and the name of the host
-inline constexpr char kHung[] = "hung";                             ///< the worker makes no progress
+inline constexpr char kHung[] = "hung";                             ///< no progress of the worker, or an input is lost
 inline constexpr char kBusProblems[] = "bus_problems";              ///< what the bus reported after joining
 inline constexpr char kHeartbeatsRefused[] = "heartbeats_refused";  ///< of a name that another connection has
 inline constexpr char kPeerPrefix[] = "peer.";                      ///< NAME.dead, NAME.hung
 inline constexpr char kTopicPrefix[] = "topic.";                    ///< TOPIC.lost, TOPIC.rejected, ...
+inline constexpr char kSentPrefix[] = "sent:";                      ///< and the topic: messages
 inline constexpr char kClockPrefix[] = "clock.";                    ///< SERVICE, and one of the next three
 inline constexpr char kClockReceivedSuffix[] = ".received_ms";
 inline constexpr char kClockOffsetSuffix[] = ".offset_ms";

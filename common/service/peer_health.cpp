@@ -23,19 +23,6 @@ std::int64_t StandstillWatch::look(std::int64_t now_ns) {
   return away_ns > limit_ns_ ? away_ns : 0;
 }
 
-/// A process that stood still itself has to take what waits for it first.
-bool InputWatch::receives_nothing(std::int64_t now_ns, std::optional<double> sent) {
-  constexpr std::int64_t kPatienceNs = 1'500'000'000;
-  constexpr double kEnough = 5;
-  const bool stood_still = standstill_.look(now_ns) > 0;
-  if (!sent || received_ == 0 || received_ != received_then_ || *sent < sent_then_ || stood_still) {
-    received_then_ = received_;
-    sent_then_ = sent.value_or(0);
-    since_ns_ = now_ns;
-  }
-  return sent && *sent - sent_then_ > kEnough && now_ns - since_ns_ > kPatienceNs;
-}
-
 /// "PID (name) STATE ...": the name may contain anything, so the last parenthesis counts.
 ProcessState process_state(std::int64_t pid, const std::string& proc_dir) {
   std::ifstream file(proc_dir + '/' + std::to_string(pid) + "/stat");

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 namespace rtd::service {
@@ -74,22 +73,6 @@ class ProgressWatch {
 
  private:
   std::int64_t limit_ns_ = 0, ticked_ns_ = 0;
-};
-
-/// Whether messages still arrive, as far as their sender counts them. A reader may be lost for good while everything
-/// else of its process continues: docs/topics.md, "Known weakness of Fast DDS". Times are given. Not thread-safe.
-class InputWatch {
- public:
-  void received() { ++received_; }
-  /// Called at least every half second. `sent`: how many messages the sender says it has sent; nullopt: not known.
-  /// True when, after earlier ones, none has arrived for 1.5 s, although more than five were sent.
-  bool receives_nothing(std::int64_t now_ns, std::optional<double> sent);
-
- private:
-  std::uint64_t received_ = 0, received_then_ = 0;
-  double sent_then_ = 0;
-  std::int64_t since_ns_ = 0;
-  StandstillWatch standstill_;
 };
 
 }  // namespace rtd::service

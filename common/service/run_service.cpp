@@ -141,6 +141,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     only_one.emplace(ServicePlace{definition.name, options.robot, options.domain, options.vendor == "inprocess"});
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
+  options.traffic = std::make_shared<bus::Traffic>();
   BoundedEnd end("rtd-" + definition.name);
   const std::int64_t begin_ns = monotonic_ns();
   const std::shared_ptr<bus::Bus> bus = join_bus(options);

@@ -21,6 +21,7 @@
 #include "common/service/peer_clocks.hpp"
 #include "common/service/peer_health.hpp"
 #include "common/service/peer_table.hpp"
+#include "common/service/silent_inputs.hpp"
 #include "common/service/stop_token.hpp"
 #include "common/service/trace.hpp"
 
@@ -49,12 +50,10 @@ class Heartbeat {
   void tick();
   /// The worker waits on purpose until the next tick.
   void idle();
-  /// A frame of the camera arrived. If no other follows although the camera sends them on this host, the worker counts
-  /// as stuck: its reader is lost.
-  void frame_received();
   /// 0, the default: a worker never counts as stuck.
   void watch_progress(std::chrono::milliseconds limit);
-  /// How the worker is, as the heartbeat sees it; stuck, too, when the bus lets no heartbeat out.
+  /// How the worker is, as the heartbeat sees it; stuck, too, when the bus lets no heartbeat out, or when nothing
+  /// arrives on an input although its source says that it sends there.
   enum class Work { kNotBegun, kContinues, kStuck };
   Work work() const;
   /// False for a service that is dead, hung, or sent no heartbeat for 0.7 s.
@@ -90,6 +89,7 @@ class Heartbeat {
   void publish_end();
   bool check_peers();
   bool check_progress();
+  bool check_inputs();
   bool check_topics();
   msg::ServiceStatus current_status();
   void receive(const msg::ServiceStatus& status, const bus::WriterId& writer);
@@ -117,7 +117,7 @@ class Heartbeat {
   std::function<void(const msg::ServiceStatus&)> callback_;
   ProgressWatch progress_;
   StandstillWatch standstill_;  ///< used by the heartbeat's thread
-  InputWatch frames_;
+  SilentInputs inputs_;
   bool begun_ = false;
   std::string stuck_;  ///< why the worker counts as stuck; empty: it does not
   std::map<std::string, bus::TopicTrouble> troubles_;

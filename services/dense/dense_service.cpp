@@ -132,7 +132,6 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
   frame_reader_ = bus::FrameReader(
       runtime.bus,
       [this](std::shared_ptr<const msg::FrameView> frame) {
-        runtime_.heartbeat.frame_received();
         joiner_->put(std::move(frame));
       },
       camera_->callbacks());

@@ -26,7 +26,6 @@ ImageInput::ImageInput(service::Runtime& runtime, const std::string& input, OnIm
   frames_ = bus::FrameReader(
       runtime.bus,
       [this](std::shared_ptr<const msg::FrameView> frame) {
-        runtime_.heartbeat.frame_received();
         const std::int64_t stamp_ns = frame->stamp_ns;
         on_image_({stamp_ns, std::move(frame), nullptr});
       },

@@ -84,7 +84,6 @@ FilterService::FilterService(const Config& config, service::Runtime& runtime)
   frame_reader_ = bus::FrameReader(
       runtime.bus,
       [this](std::shared_ptr<const msg::FrameView> frame) {
-        runtime_.heartbeat.frame_received();
         frames_->push({std::move(frame), camera_->changes()});
       },
       camera_->callbacks());

@@ -139,13 +139,13 @@ class CycloneRawBus : public RegistryRawBus {
 
   std::map<ParticipantId, std::string> participants() const override { return participant_->participants(); }
 
-  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
-                                    RawHandlers handlers) override {
+  std::unique_ptr<RawReader> make_reader(const RawTopic& topic, const RawReaderOptions& options,
+                                         RawHandlers handlers) override {
     return std::make_unique<CycloneReader>(participant_, raw_type(topic, options), topic.name, raw_reader_qos(options),
                                            raw_handlers(handlers));
   }
-  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
-                                    StatusCallbacks callbacks) override {
+  std::unique_ptr<RawWriter> make_writer(const RawTopic& topic, const RawWriterOptions& options,
+                                         StatusCallbacks callbacks) override {
     return std::make_unique<RawCycloneWriter>(participant_, topic, options, std::move(callbacks));
   }
   std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {

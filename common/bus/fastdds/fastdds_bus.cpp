@@ -212,14 +212,14 @@ class FastddsRawBus : public RegistryRawBus {
     participant_->silence();
   }
 
-  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
-                                    RawHandlers handlers) override {
+  std::unique_ptr<RawReader> make_reader(const RawTopic& topic, const RawReaderOptions& options,
+                                         RawHandlers handlers) override {
     const StatusCallbacks status = handlers.status;
     return std::make_unique<FastddsReader>(participant_, create_raw_codec(topic, options), topic.name,
                                            raw_reader_qos(options), raw_callback(std::move(handlers)), status);
   }
-  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options,
-                                    StatusCallbacks callbacks) override {
+  std::unique_ptr<RawWriter> make_writer(const RawTopic& topic, const RawWriterOptions& options,
+                                         StatusCallbacks callbacks) override {
     return std::make_unique<FastddsRawWriter>(participant_, topic, options, std::move(callbacks));
   }
   std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {

@@ -37,7 +37,8 @@ class InprocessWriter : public WriterBackend {
                   StatusCallbacks callbacks, const WriterId& connection)
       : domain_(std::move(domain)),
         id_(id),
-        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks)),
+        endpoint_{{topic, dds_type_name(id), qos_settings(profile)},
+                  StatusReporter(std::move(callbacks)),
                   domain_->new_id(connection)} {
     domain_->add(endpoint_);
   }
@@ -69,8 +70,7 @@ class InprocessWriter : public WriterBackend {
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
-std::function<void(Message)> wanted_messages(ErasedCallback on_message,
-                                             std::function<bool(const WriterId&)> accepts) {
+std::function<void(Message)> wanted_messages(ErasedCallback on_message, std::function<bool(const WriterId&)> accepts) {
   return [on_message = std::move(on_message), accepts = std::move(accepts)](Message message) {
     if (!accepts || accepts(message.writer)) on_message(std::move(message.content), message.writer);
   };
@@ -114,9 +114,9 @@ class InprocessRawWriter : public RawWriter {
     block->assign(cdr);
     const std::lock_guard lock(mutex_);
     const std::int64_t now_ns = realtime_ns();
-    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.id, ++sequence_,
-                                                                            source_ns == 0 ? now_ns : source_ns, now_ns,
-                                                                            std::move(block)}));
+    domain_->publish(endpoint_,
+                     std::make_shared<const RawSample>(RawSample{
+                         endpoint_.id, ++sequence_, source_ns == 0 ? now_ns : source_ns, now_ns, std::move(block)}));
     return true;
   }
   int matched() const override { return endpoint_.status.matched(); }
@@ -182,13 +182,14 @@ class InprocessRawBus : public RegistryRawBus {
 
   std::vector<TopicReader> readers() const override { return domain_->readers(); }
 
-  std::unique_ptr<RawReader> reader(const RawTopic& topic, const RawReaderOptions& options,
-                                    RawHandlers handlers) override {
+  std::unique_ptr<RawReader> make_reader(const RawTopic& topic, const RawReaderOptions& options,
+                                         RawHandlers handlers) override {
     EndpointKind kind{topic.name, topic.type, {options.depth, options.transient_local}, options.reliable};
     return std::make_unique<InprocessReader>(domain_, std::move(kind), raw_callback(std::move(handlers)),
                                              StatusCallbacks());
   }
-  std::unique_ptr<RawWriter> writer(const RawTopic& topic, const RawWriterOptions& options, StatusCallbacks) override {
+  std::unique_ptr<RawWriter> make_writer(const RawTopic& topic, const RawWriterOptions& options,
+                                         StatusCallbacks) override {
     return std::make_unique<InprocessRawWriter>(domain_, topic, options.qos);
   }
   std::unique_ptr<CallEndpoint> create_calls(const CallTopics& topics, CallRole role, OnCall on_call) override {

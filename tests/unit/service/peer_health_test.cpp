@@ -83,49 +83,5 @@ TEST(StandstillWatch, distinguishes_a_stop_of_the_process_from_its_work) {
   EXPECT_EQ(watch.look(15'500 * kNsPerMs), 0);
 }
 
-/// Looks ten times a second.
-class InputWatchTest : public testing::Test {
- protected:
-  /// Whether it received nothing at the last look; each look finds so many more sent and received.
-  bool look(int times, int sent, int received) {
-    bool receives_nothing = false;
-    for (int i = 0; i < times; ++i) {
-      for (int j = 0; j < received; ++j) watch_.received();
-      receives_nothing = watch_.receives_nothing(now_ns_ += 100 * kNsPerMs, sent_ += sent);
-    }
-    return receives_nothing;
-  }
-  InputWatch watch_;
-  std::int64_t now_ns_ = 0;
-  double sent_ = 0;
-};
-
-TEST_F(InputWatchTest, one_that_received_before_and_receives_nothing_more_is_cut_off) {
-  EXPECT_FALSE(look(10, 3, 3));
-  EXPECT_FALSE(look(15, 3, 0));
-  EXPECT_TRUE(look(1, 3, 0));
-  EXPECT_FALSE(look(1, 3, 1)) << "it receives again";
-}
-
-TEST_F(InputWatchTest, silence_of_the_sender_does_not_count) {
-  look(10, 3, 3);
-  EXPECT_FALSE(look(50, 0, 0));
-  EXPECT_FALSE(watch_.receives_nothing(now_ns_ += 100 * kNsPerMs, std::nullopt)) << "the sender is gone";
-  sent_ = 0;
-  EXPECT_FALSE(look(10, 3, 0)) << "another one begins to count";
-  EXPECT_TRUE(look(10, 3, 0));
-}
-
-TEST_F(InputWatchTest, one_that_never_received_may_not_be_meant) {
-  EXPECT_FALSE(look(50, 3, 0));
-}
-
-TEST_F(InputWatchTest, one_that_was_stopped_has_time_to_take_what_waits) {
-  look(10, 3, 3);
-  now_ns_ += 3000 * kNsPerMs;
-  EXPECT_FALSE(look(1, 90, 0));
-  EXPECT_FALSE(look(1, 3, 90));
-}
-
 }  // namespace
 }  // namespace rtd::service

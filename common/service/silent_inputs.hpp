@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/bus/traffic.hpp"
+#include "common/msg/status.hpp"
+#include "common/service/peer_table.hpp"
+
+namespace rtd::service {
+
+/// Whether messages of one sender still arrive, as far as it counts them. A reader may be lost for good while
+/// everything else of its process continues: docs/topics.md, "Known weakness of Fast DDS". Times are given. Not
+/// thread-safe.
+class InputWatch {
+ public:
+  /// Called at least every half second, with how many messages were received and, as the sender says, sent so far. True
+  /// when none has arrived for 1.5 s, although two were sent later than half a second after the last one.
+  bool silent(std::int64_t now_ns, std::uint64_t received, std::uint64_t sent);
+
+ private:
+  bool begun_ = false;
+  std::uint64_t received_ = 0, sent_ = 0;  ///< sent_: of these none is on its way any more
+  std::int64_t since_ns_ = 0;
+};
+
+/// A service that lives, by its heartbeats.
+struct Sender {
+  std::string name;
+  bus::ParticipantId connection{};
+  bool here = false;                          ///< on this host
+  std::map<std::string, std::uint64_t> sent;  ///< messages, by topic
+};
+/// Finds the inputs of a process on which nothing arrives although their writers live and count what they send, and
+/// logs when one falls silent and when it is back. Times are given. Not thread-safe.
+class SilentInputs {
+ public:
+  using Inputs = std::vector<std::shared_ptr<const bus::Input>>;
+  /// `heartbeats`: their topic.
+  explicit SilentInputs(std::string heartbeats) : heartbeats_(std::move(heartbeats)) {}
+
+  /// Called at least every half second; without inputs once the process is to end. `own`: this process, whose readers
+  /// of its own topics receive what it sends for sure. True when an input fell silent or is not any more.
+  bool look(const Inputs& inputs, Sender own, const PeerTable& peers, std::int64_t now_ns);
+  /// This process stood still: it has to take what waits for it first.
+  void forgive() { watches_.clear(); }
+  /// What is said of one for which a restart is worth it; empty: there is none. Its sender is on this host, and the
+  /// reader, which follows one source, has followed it; or the topic is that of the heartbeats. So no program ends a
+  /// service by its heartbeats alone.
+  std::string lost() const;
+  /// A metric for each, and of a service that works otherwise state and message.
+  void add_to(msg::ServiceStatus& status) const;
+
+ private:
+  struct Silent {
+    std::string topic, sender;
+    bool lost = false;
+    std::string text() const { return "nothing arrives on " + topic + ", although " + sender + " sends"; }
+    auto operator<=>(const Silent&) const = default;
+  };
+  std::set<Silent> silent_now(const Inputs& inputs, const std::vector<Sender>& senders, std::int64_t now_ns);
+
+  const std::string heartbeats_;
+  std::map<std::pair<const bus::Input*, bus::ParticipantId>, InputWatch> watches_;
+  std::set<Silent> silent_;
+};
+
+}  // namespace rtd::service
