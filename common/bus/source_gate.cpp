@@ -9,8 +9,8 @@ namespace rtd::bus {
 namespace {
 
 constexpr std::size_t kMaxClaims = 8, kMaxDeparted = 32, kMaxMatched = 256, kMaxRefused = 256;
-constexpr std::int64_t kMessagesOnTheirWayNs = 200'000'000;  // of one that has ended
-constexpr std::int64_t kReceivedLatelyNs = 50'000'000;       // no need to ask whether it lives
+constexpr std::int64_t kMessagesOnTheirWayNs = 1'000'000'000;  // of one that has ended, on a busy host
+constexpr std::int64_t kReceivedLatelyNs = 50'000'000;         // no need to ask whether it lives
 
 }  // namespace
 
@@ -30,7 +30,8 @@ SourceGate::Verdict SourceGate::judge(const WriterId& writer, std::int64_t now_n
   const std::size_t place = place_of(source);
   const bool departed = std::ranges::find(departed_, writer) != departed_.end();
   if (place != kNone && place == holder_) {
-    claims_[place].received_ns = now_ns;
+    const bool ended = departed || (options_.gone && options_.gone(source));
+    if (!ended) claims_[place].received_ns = now_ns;  // else it comes late: what was lost before it held it back
     claims_[place].present = claims_[place].present || !departed;
     return {true};
   }

@@ -5,14 +5,20 @@
 
 Faults: kill (SIGKILL), stop (SIGSTOP), shm (/dev/shm full), disk (the disk of the map full), clock (a step of up to an
 hour), link (loopback down). All but kill and clock last two seconds. As root, everything happens in namespaces of this
-program: neither the network nor the memory of the host is touched. Without root, disk and link are left out."""
+program: neither the network nor the memory of the host is touched. Without root, disk and link are left out.
+
+Next to much other work, with both vendors:
+  for dds in fastdds cyclonedds; do for seed in 1 2 3; do chaos.py --minutes 4 --busy 3 --dds $dds --seed $seed; done; done
+"""
 import argparse
+import contextlib
 import json
 import mmap
 import os
 import pathlib
 import random
 import re
+import shutil
 import signal
 import statistics
 import struct
@@ -47,6 +53,10 @@ def arguments():
     parser.add_argument("--dds", default="fastdds", help="(%(default)s)")
     parser.add_argument("--domain", default=83, type=int, help="DDS domain (%(default)s)")
     parser.add_argument("--seed", default=1, type=int, help="(%(default)s)")
+    parser.add_argument("--busy", default=0, type=int, help="busy processes beside it (%(default)s)")
+    parser.add_argument("--own-sessions", action="store_true",
+                        help="each in a session of its own, to which Linux gives as much as to the whole pipeline")
+    parser.add_argument("--keep", type=pathlib.Path, metavar="FOLDER", help="new, for logs and trace of the run")
     parser.add_argument("options", nargs="*", metavar="-- OPTION", help="of rtd run")
     args = parser.parse_args()
     args.faults, args.services = args.faults.split(","), args.services.split(",")
@@ -166,6 +176,9 @@ def inflict(args, run):
             service = args.services[turn % len(args.services)]
             turn += 1
         pid = run.pid_of(service) if service else None
+        if service and not pathlib.Path(f"/proc/{pid}").exists():  # killed, and not back yet
+            time.sleep(0.5)
+            continue
         done.append((fault, service, pid, time.monotonic_ns()))
         print(f"chaos: {(time.monotonic() - started) / 60:.1f} min: {fault} {service}", flush=True)
         run.harm(fault, pid, chance)
@@ -180,7 +193,7 @@ class Trace:
     """What `rtd run --trace` wrote, one event a line: beginnings of processes, frames sent, poses."""
 
     def __init__(self, path):
-        self.first, self.joined, self.frames, self.poses, names, begun = {}, {}, [], [], {}, {}
+        self.first, self.begun, self.joined, self.frames, self.poses, names, begun = {}, {}, {}, [], [], {}, {}
         with path.open(encoding="utf-8") as lines:
             events = (json.loads(line.strip(",\n")) for line in lines if '"ph"' in line)
             for event in events:
@@ -189,6 +202,7 @@ class Trace:
                     names[pid] = event["args"]["name"]
                     continue
                 if event["name"] == "join":
+                    self.begun[pid] = at_ns
                     self.joined[pid] = at_ns + event["dur"] * 1e3
                     continue
                 self.first[pid] = min(self.first.get(pid, float("inf")), at_ns)
@@ -209,8 +223,14 @@ class Trace:
 
     def back_after_s(self, service, pid, at_ns):
         """Until another process of the service works on a frame; has joined the bus, where keyframes are rare work."""
-        begun = self.joined if service == "dense" else self.first
-        times = [at for one, at in begun.items() if self.names[one] == f"rtd-{service}" and one != pid and at > at_ns]
+        return self._next_s(self.joined if service == "dense" else self.first, service, pid, at_ns)
+
+    def steps_s(self, service, pid, at_ns):
+        """Until another process of the service begins to join the bus, and has joined it."""
+        return [self._next_s(times, service, pid, at_ns) for times in (self.begun, self.joined)]
+
+    def _next_s(self, of_pid, service, pid, at_ns):
+        times = [at for one, at in of_pid.items() if self.names[one] == f"rtd-{service}" and one != pid and at > at_ns]
         return (min(times) - at_ns) * 1e-9 if times else float("inf")
 
     def share_with_pose(self, faults):
@@ -234,6 +254,8 @@ def report(run, trace, faults):
         those = [one for one in faults if one[:2] == (fault, service)]
         name = f"{fault} {service}".strip()
         if fault == "kill":
+            for step, values in zip(("starts", "has joined"), zip(*(trace.steps_s(service, pid, at) for _, _, pid, at in those))):
+                row(f"{name}: {step}", values)
             row(f"{name}: works again", [trace.back_after_s(service, pid, at) for _, _, pid, at in those])
         lasting_ns = 0 if fault in ("kill", "clock") else SPAN_S * 1e9
         row(f"{name}: next pose", [trace.pose_after_s(at + lasting_ns) for _, _, _, at in those])
@@ -244,10 +266,22 @@ def report(run, trace, faults):
     return share >= LEAST_POSES and maps == 1
 
 
+@contextlib.contextmanager
+def busy(count, own_sessions):
+    spinning = [subprocess.Popen([sys.executable, "-c", "while True: pass"], start_new_session=own_sessions)
+                for _ in range(count)]
+    try:
+        yield
+    finally:
+        for process in spinning:
+            process.kill()
+            process.wait()
+
+
 def main():
     args = arguments()
     enter_namespaces(args)
-    with tempfile.TemporaryDirectory(prefix="rtd_chaos_") as folder:
+    with tempfile.TemporaryDirectory(prefix="rtd_chaos_") as folder, busy(args.busy, args.own_sessions):
         run = Run(args, folder)
         try:
             time.sleep(WARM_UP_S)
@@ -258,6 +292,10 @@ def main():
             output = run.stop()
             if os.geteuid() == 0:
                 subprocess.run(["umount", "-l", str(run.disk)], check=True)
+            if args.keep:
+                shutil.copytree(run.out, args.keep)
+                shutil.copy(run.trace, args.keep)
+                shutil.copy(run.output, args.keep)
         if not report(run, Trace(run.trace), faults):
             sys.exit(f"chaos: too few poses, or a map was lost\n{output}")
 

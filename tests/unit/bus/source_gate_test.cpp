@@ -84,9 +84,20 @@ TEST_F(SourceGateTest, the_successor_of_a_process_that_died_passes_at_once) {
   EXPECT_TRUE(gate_.accepts(other_));
 }
 
+TEST_F(SourceGateTest, late_messages_of_a_process_that_died_do_not_keep_its_successor_out) {
+  EXPECT_TRUE(gate_.accepts(camera_));
+  EXPECT_FALSE(gate_.accepts(other_)) << "the death is not known yet";
+  now_ns_ += 400 * kMs;
+  EXPECT_TRUE(gate_.accepts(camera_));
+  gone_.insert(participant_of(camera_));
+  now_ns_ += 5 * kS;
+  EXPECT_TRUE(gate_.accepts(camera_)) << "held back until its connection is given up";
+  EXPECT_TRUE(gate_.accepts(other_));
+}
+
 TEST_F(SourceGateTest, one_that_sent_beside_it_waits_for_the_long_silence_and_a_newcomer_does_not) {
   EXPECT_TRUE(gate_.accepts(camera_));
-  for (int i = 0; i < 10; ++i) {
+  for (int i = 0; i < 30; ++i) {
     now_ns_ += 50 * kMs;
     EXPECT_FALSE(gate_.accepts(other_));
     EXPECT_TRUE(gate_.accepts(camera_));
