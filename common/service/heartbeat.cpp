@@ -136,7 +136,6 @@ void Heartbeat::forgive_standstill(std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   progress_.forgive(stood_still_ns);
   peers_.forgive(stood_still_ns);
-  inputs_.forgive();
 }
 
 void Heartbeat::forget_silent(std::int64_t now_ns) {

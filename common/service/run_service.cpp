@@ -186,6 +186,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
 
 using std::chrono::microseconds;
 constexpr microseconds kNotifyPeriod{50'000};
+constexpr std::uint64_t kSigns = 10;
 
 }  // namespace
 
@@ -269,11 +270,11 @@ SystemdLink::~SystemdLink() {
   sd_notify(0, "STOPPING=1");
 }
 
-/// The watchdog gets three signs of life in its time.
+/// The watchdog gets ten signs of life in its time: a service that was stopped for most of it has the rest to give one.
 void SystemdLink::watch(const std::stop_token& ended) {
   std::uint64_t limit_us = 0;
   const bool watched = sd_watchdog_enabled(0, &limit_us) > 0;
-  microseconds period = watched ? std::min(kNotifyPeriod, microseconds(limit_us / 3)) : kNotifyPeriod;
+  microseconds period = watched ? std::min(kNotifyPeriod, microseconds(limit_us / kSigns)) : kNotifyPeriod;
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
@@ -284,7 +285,7 @@ void SystemdLink::watch(const std::stop_token& ended) {
       sd_notify(0, "READY=1");
       ready = true;
       if (!watched) return;
-      period = microseconds(limit_us / 3);
+      period = microseconds(limit_us / kSigns);
     }
     if (watched && work != Heartbeat::Work::kStuck) sd_notify(0, "WATCHDOG=1");
     wake.wait_for(lock, ended, period, [] { return false; });

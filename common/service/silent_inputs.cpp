@@ -62,13 +62,14 @@ bool reaches_another(const std::string& name, const Peer& peer, const PeerTable&
 }  // namespace
 
 bool InputWatch::silent(std::int64_t now_ns, std::uint64_t received, std::uint64_t sent) {
-  constexpr std::int64_t kOnTheirWayNs = 500'000'000, kPatienceNs = 1'500'000'000;
+  constexpr std::int64_t kCountedLateNs = 500'000'000, kOnTheirWayNs = 1'000'000'000;
   constexpr std::uint64_t kEnough = 2;
-  if (!begun_ || received != received_ || sent < sent_) since_ns_ = now_ns;
+  if (!begun_ || received != received_ || sent < sent_) received_ns_ = now_ns;
   begun_ = true;
   received_ = received;
-  if (now_ns - since_ns_ <= kOnTheirWayNs) sent_ = sent;
-  return sent - sent_ >= kEnough && now_ns - since_ns_ > kPatienceNs;
+  if (now_ns - received_ns_ <= kCountedLateNs) sent_ = sent;
+  if (sent == sent_) complete_ns_ = now_ns;
+  return sent - sent_ >= kEnough && now_ns - complete_ns_ > kOnTheirWayNs;
 }
 
 std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, const std::vector<Sender>& senders,
@@ -95,6 +96,8 @@ std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, co
 }
 
 bool SilentInputs::look(const Inputs& inputs, Sender own, const PeerTable& peers, std::int64_t now_ns) {
+  constexpr std::int64_t kStarvedNs = 250'000'000;
+  if (now_ns - std::exchange(looked_ns_, now_ns) > kStarvedNs) watches_.clear();
   std::set<Silent> silent = silent_now(inputs, living_senders(std::move(own), peers, now_ns), now_ns);
   for (const auto& [name, peer] : peers.peers()) {
     if (!inputs.empty() && reaches_another(name, peer, peers, now_ns)) silent.insert({heartbeats_, name, false});

@@ -85,6 +85,15 @@ TEST(SystemdLink, feeds_the_watchdog_until_the_worker_is_stuck) {
   EXPECT_EQ(manager.receive(300), std::nullopt);
 }
 
+TEST(SystemdLink, a_service_that_was_stopped_for_most_of_the_time_has_the_rest_to_give_a_sign) {
+  const Manager manager;
+  Manager::watch(9000);
+  const SystemdLink link([] { return Work::kContinues; });
+  EXPECT_EQ(manager.receive(2000), "READY=1");
+  EXPECT_EQ(manager.receive(2000), "WATCHDOG=1");
+  EXPECT_EQ(manager.receive(2800), "WATCHDOG=1") << "the next one comes before a third of the time is over";
+}
+
 TEST(SystemdLink, is_silent_without_systemd) {
   const SystemdLink link([]() -> Work {
     ADD_FAILURE() << "asked";
