@@ -61,19 +61,17 @@ bool reaches_another(const std::string& name, const Peer& peer, const PeerTable&
 
 }  // namespace
 
-bool InputWatch::silent(std::int64_t now_ns, std::uint64_t received, std::uint64_t sent) {
-  constexpr std::int64_t kCountedLateNs = 500'000'000, kOnTheirWayNs = 1'000'000'000;
+bool InputWatch::silent(std::uint64_t received, std::uint64_t sent) {
+  constexpr int kCountedLate = 5, kOnTheirWay = 12;  // looks
   constexpr std::uint64_t kEnough = 2;
-  if (!begun_ || received != received_ || sent < sent_) received_ns_ = now_ns;
-  begun_ = true;
+  if (received != received_ || sent < sent_) since_received_ = 0;
   received_ = received;
-  if (now_ns - received_ns_ <= kCountedLateNs) sent_ = sent;
-  if (sent == sent_) complete_ns_ = now_ns;
-  return sent - sent_ >= kEnough && now_ns - complete_ns_ > kOnTheirWayNs;
+  if (since_received_++ <= kCountedLate) sent_ = sent;
+  since_complete_ = sent == sent_ ? 0 : since_complete_ + 1;
+  return sent - sent_ >= kEnough && since_complete_ >= kOnTheirWay;
 }
 
-std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, const std::vector<Sender>& senders,
-                                                        std::int64_t now_ns) {
+std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, const std::vector<Sender>& senders) {
   decltype(watches_) watches;
   std::set<Silent> silent;
   for (const auto& input : inputs) {
@@ -85,7 +83,7 @@ std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, co
       if (!received) continue;
       const std::pair key(input.get(), connection);
       InputWatch& watch = watches[key] = watches_[key];
-      if (!watch.silent(now_ns, *received, sent->second)) continue;
+      if (!watch.silent(*received, sent->second)) continue;
       const bool speaks_for_it = connection == sender.connection || sender.name == "replay";
       const bool follows = input->gated() && input->source() == connection && speaks_for_it;
       silent.insert({input->topic(), sender.name, sender.here && (follows || input->topic() == heartbeats_)});
@@ -96,9 +94,7 @@ std::set<SilentInputs::Silent> SilentInputs::silent_now(const Inputs& inputs, co
 }
 
 bool SilentInputs::look(const Inputs& inputs, Sender own, const PeerTable& peers, std::int64_t now_ns) {
-  constexpr std::int64_t kStarvedNs = 250'000'000;
-  if (now_ns - std::exchange(looked_ns_, now_ns) > kStarvedNs) watches_.clear();
-  std::set<Silent> silent = silent_now(inputs, living_senders(std::move(own), peers, now_ns), now_ns);
+  std::set<Silent> silent = silent_now(inputs, living_senders(std::move(own), peers, now_ns));
   for (const auto& [name, peer] : peers.peers()) {
     if (!inputs.empty() && reaches_another(name, peer, peers, now_ns)) silent.insert({heartbeats_, name, false});
   }

@@ -37,8 +37,7 @@ class InprocessWriter : public WriterBackend {
                   StatusCallbacks callbacks, const WriterId& connection)
       : domain_(std::move(domain)),
         id_(id),
-        endpoint_{{topic, dds_type_name(id), qos_settings(profile)},
-                  StatusReporter(std::move(callbacks)),
+        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks)),
                   domain_->new_id(connection)} {
     domain_->add(endpoint_);
   }
@@ -70,7 +69,8 @@ class InprocessWriter : public WriterBackend {
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
-std::function<void(Message)> wanted_messages(ErasedCallback on_message, std::function<bool(const WriterId&)> accepts) {
+std::function<void(Message)> wanted_messages(ErasedCallback on_message,
+                                             std::function<bool(const WriterId&)> accepts) {
   return [on_message = std::move(on_message), accepts = std::move(accepts)](Message message) {
     if (!accepts || accepts(message.writer)) on_message(std::move(message.content), message.writer);
   };
@@ -114,9 +114,9 @@ class InprocessRawWriter : public RawWriter {
     block->assign(cdr);
     const std::lock_guard lock(mutex_);
     const std::int64_t now_ns = realtime_ns();
-    domain_->publish(endpoint_,
-                     std::make_shared<const RawSample>(RawSample{
-                         endpoint_.id, ++sequence_, source_ns == 0 ? now_ns : source_ns, now_ns, std::move(block)}));
+    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.id, ++sequence_,
+                                                                            source_ns == 0 ? now_ns : source_ns, now_ns,
+                                                                            std::move(block)}));
     return true;
   }
   int matched() const override { return endpoint_.status.matched(); }
