@@ -38,6 +38,19 @@ int recover(pthread_mutex_t* mutex, int result) {
   return pthread_mutex_consistent(mutex);
 }
 
+/// A flag that the C library keeps in the lock.
+bool is_robust(const pthread_mutex_t& mutex) {
+  constexpr int kRobust = 16;
+  return (mutex.__data.__kind & kRobust) != 0;
+}
+
+timespec in_a_second(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  ++time.tv_sec;
+  return time;
+}
+
 constexpr double kStoodStill_s = 2;            // less than a lease
 constexpr timespec kPatience{0, 700'000'000};  // the others' next messages arrive, and their leases begin again
 
@@ -145,7 +158,12 @@ int pthread_mutexattr_setpshared(pthread_mutexattr_t* attributes, int shared) no
 
 int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* until) noexcept {
   static const auto original = next<int(pthread_mutex_t*, const timespec*)>("pthread_mutex_timedlock");
-  return recover(mutex, original(mutex, until));
+  int result = original(mutex, until);
+  while (result == ETIMEDOUT && is_robust(*mutex)) {
+    const timespec again = in_a_second(CLOCK_REALTIME);
+    result = original(mutex, &again);
+  }
+  return recover(mutex, result);
 }
 
 int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {

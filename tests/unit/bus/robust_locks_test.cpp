@@ -101,6 +101,27 @@ TEST_F(RobustLocks, a_wait_ends_although_the_owner_was_killed) {
   waitpid(child, nullptr, 0);
 }
 
+TEST_F(RobustLocks, one_whose_owner_lives_is_waited_for) {
+  for (const bool killed : {false, true}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      pthread_mutex_lock(&lock_->mutex);
+      usleep(300'000);
+      if (killed) raise(SIGKILL);
+      pthread_mutex_unlock(&lock_->mutex);
+      _exit(0);
+    }
+    while (pthread_mutex_trylock(&lock_->mutex) == 0) {
+      pthread_mutex_unlock(&lock_->mutex);
+      usleep(1000);
+    }
+    const timespec until = after(std::chrono::milliseconds(10));
+    EXPECT_EQ(pthread_mutex_timedlock(&lock_->mutex, &until), 0) << (killed ? "until it is killed" : "");
+    EXPECT_EQ(pthread_mutex_unlock(&lock_->mutex), 0);
+    waitpid(child, nullptr, 0);
+  }
+}
+
 /// A library finds the functions of the program before those of the C library.
 TEST_F(RobustLocks, are_those_that_fast_dds_finds) {
   Dl_info ours{}, found{};
