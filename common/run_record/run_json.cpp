@@ -120,6 +120,7 @@ Json record_json(const RunRecord& record) {
             {"duration_s", to_value(record.duration_s)},
             {"frames_in", record.frames_in},
             {"frames_left_out", record.frames_left_out},
+            {"frames_not_played", record.frames_not_played},
             {"frames_out_of_range", record.frames_out_of_range},
             {"frames_dropped", record.frames_dropped},
             {"drops", Json::object()},
@@ -208,6 +209,7 @@ RunRecord read_record(const Json& json) {
   json.at("frames_dropped").get_to(record.frames_dropped);
   record.z_up = json.value("z_up", false);
   record.frames_left_out = json.value("frames_left_out", std::uint64_t{0});  // earlier versions did not write them
+  record.frames_not_played = json.value("frames_not_played", std::uint64_t{0});
   record.frames_out_of_range = json.value("frames_out_of_range", std::uint64_t{0});
   if (json.contains("depth_median_m")) from_value(json.at("depth_median_m"), record.depth_median_m);
   if (json.contains("depth_holes")) from_value(json.at("depth_holes"), record.depth_holes);

@@ -34,7 +34,7 @@ std::string FrameUse::text() const {
 
 FrameUse frame_use(const RunRecord& record) {
   FrameUse use;
-  use.given = record.frames_in + record.frames_left_out;
+  use.given = record.frames_in + record.frames_left_out + record.frames_not_played;
   use.with_pose = static_cast<std::uint64_t>(std::ranges::count_if(
       record.frames, [](const FrameRecord& frame) { return msg::is_measured(frame.tracking.state); }));
   const std::uint64_t lost = std::max(record.frames_dropped, record.frames_out_of_range);

@@ -87,6 +87,7 @@ struct RunRecord {
   double duration_s = 0;                                 ///< from the first frame to the last pose
   std::uint64_t frames_in = 0;                           ///< frames the source delivered
   std::uint64_t frames_left_out = 0;                     ///< frames that it had and could not deliver
+  std::uint64_t frames_not_played = 0;                   ///< frames that it has and the run did not come to
   std::uint64_t frames_out_of_range = 0;                 ///< delivered, but without a depth that slam may use
   std::uint64_t frames_dropped = 0;                      ///< frames in without a TrackingResult
   std::map<std::string, double> drops;                   ///< by place, e.g. "camera.late", "filter.queue"
@@ -103,7 +104,7 @@ struct RunRecord {
 
 /// How many frames of a source a run has used. Everything that is said about a run counts by these.
 struct FrameUse {
-  std::uint64_t given = 0;      ///< the source had them, whether it could deliver them or not
+  std::uint64_t given = 0;      ///< the source has them, whether it could deliver them and the run came to them or not
   std::uint64_t used = 0;       ///< slam got them, with a depth that it may use, and answered
   std::uint64_t with_pose = 0;  ///< a measured one: ok, doubtful or odometry
 

@@ -7,11 +7,11 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <limits>
 #include <opencv2/core/utility.hpp>
 #include <utility>
 
 #include "common/camera/live_uri.hpp"
-#include "common/io/atomic_file.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
@@ -30,10 +30,7 @@ constexpr std::chrono::milliseconds kReadinessCheck{50};      // a peer that fal
 constexpr std::chrono::milliseconds kLongestWait{100};        // between two looks at the stop token
 constexpr std::int64_t kLastResultTimeoutNs = 2'000'000'000;  // pace realtime
 constexpr std::chrono::milliseconds kFarewell{300};           // the last heartbeats reach their readers
-constexpr int kReportEvery = 10;                              // frames
 constexpr double kBufferedFrames = 3, kBuffered_s = 0.1;      // as a camera's driver buffers; readers keep four
-constexpr std::size_t kOffsetsToLog = 30;                     // frames
-constexpr std::uint64_t kDepthToLog = 11;                     // frames, of which two are looked at
 
 std::int64_t seconds_to_ns(double seconds) {
   return static_cast<std::int64_t>(seconds * 1e9);
@@ -47,6 +44,13 @@ std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus:
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
+}
+
+std::optional<ResumePoint> resume_point_of(const ServiceConfig& config) {
+  const std::optional<ResumePoint> point = parse_resume_point(config.resume_after);
+  if (!point && !config.resume_after.empty())
+    throw service::ConfigError("camera.resume_after: '" + config.resume_after + "' is not SEQ,STAMP_NS,PUBLISHED_NS");
+  return point;
 }
 
 service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
@@ -87,8 +91,9 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       changes_(std::make_shared<concurrency::BoundedQueue<bool>>(1, concurrency::Overflow::kDropOldest)),
       publisher_(runtime.bus, config.jpeg_quality,
                  realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
-                 [changes = changes_] { changes->push(true); }),
+                 [changes = changes_] { changes->push(true); }, static_cast<std::uint64_t>(config.source_id)),
       truth_(runtime.bus.writer(bus::topics::kGroundTruth)),
+      resume_(resume_point_of(config)),
       slam_(service::follow_source("slam", runtime)),
       tracking_(runtime.bus.reader<msg::TrackingResult>(
           bus::topics::kTracking, [results = results_](const auto& result) { results->push(result->seq); },
@@ -102,7 +107,8 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
   }
   if (!config_.beside.empty()) open_beside();
   if (!source_->info().live) open_publisher();
-  if (std::ranges::count(config_.wait_for, "none") > 0) config_.wait_for.clear();
+  const auto none = std::find(config_.wait_for.rbegin(), config_.wait_for.rend(), "none");  // empties the list
+  config_.wait_for.erase(config_.wait_for.begin(), none.base());
   runtime.heartbeat.on_status([changes = changes_](const auto&) { changes->push(true); });
   runtime.stop.on_stop([source = source_, results = results_, changes = changes_] {
     source->stop();
@@ -129,8 +135,7 @@ service::ExitCode CameraService::run() {
   if (outcome == Outcome::kDone) {
     runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
     playing_ = true;
-    ReadAhead frames(*source_, kReadAhead, static_cast<std::uint64_t>(config_.frames), service::monotonic_ns);
-    outcome = play(frames);
+    outcome = play();
     if (outcome == Outcome::kDone) outcome = drain();
   }
   return finish(outcome);
@@ -143,7 +148,6 @@ CameraService::Outcome CameraService::open() {
     return fail(fmt::format("source {}: {}", config_.source, error.what()));
   }
   if (source_->info().live) open_publisher();
-  left_out_.open(source_->info().frames, static_cast<std::uint64_t>(config_.frames), source_->counters());
   log_opened(source_->info());
   return Outcome::kDone;
 }
@@ -193,7 +197,36 @@ std::vector<std::string> CameraService::missing() const {
   }
   const int readers = publisher_.frame_readers() + publisher_.jpeg_readers();
   if (readers < expected) absent.push_back(fmt::format("{} of {} frame readers", expected - readers, expected));
+  if (resume_ && tracking_.matched() == 0) absent.emplace_back("the results of slam");
   return absent;
+}
+
+CameraService::Outcome CameraService::play() {
+  const auto most = static_cast<std::uint64_t>(config_.frames);
+  left_out_.open(source_->info().frames, most, source_->counters());
+  if (resume_) resume();
+  if (most > 0 && frames_in_ >= most) return Outcome::kDone;
+  ReadAhead frames(*source_, kReadAhead, most > 0 ? most - frames_in_ : 0, service::monotonic_ns);
+  return play(frames);
+}
+
+/// What is stored gives the next frame; in realtime the one that is due now, and those before it are late. A running
+/// camera gives what it sees. No reading of an IMU or wheels is given twice.
+void CameraService::resume() {
+  frames_in_ = resume_->seq + 1;
+  if (!source_->info().live) {
+    source_->pass_over(resume_->stamp_ns + 1);
+    passed_ = source_->counters();
+    left_out_.resume(frames_in_, passed_);
+    if (beside_) beside_->pass_over(resume_->stamp_ns);
+  }
+  if (realtime_ && !source_->info().live) {
+    const std::int64_t due_ns = resume_->stamp_ns + service::monotonic_ns() - resume_->published_ns;
+    passed_over_ = source_->pass_over(due_ns);
+    if (config_.frames > 0) passed_over_ = std::min(passed_over_, static_cast<std::uint64_t>(config_.frames) - frames_in_);
+    frames_in_ += passed_over_;
+  }
+  SPDLOG_INFO("event=resumed frame={} late={}", frames_in_, passed_over_);
 }
 
 CameraService::Outcome CameraService::play(ReadAhead& frames) {
@@ -207,6 +240,8 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
     if (!item->frame) return runtime_.stop.stop_requested() ? Outcome::kStopped : Outcome::kDone;
+    if (resume_ && !source_->info().live && item->frame->image.stamp_ns <= resume_->stamp_ns) continue;
+    item->frame->image.seq = frames_in_;
     runtime_.trace.async_span("read", item->begin_ns, item->end_ns, item->frame->image.seq);
     if (const Outcome outcome = handle(std::move(*item->frame), frames); outcome != Outcome::kDone) return outcome;
     if (frames_in_ % kReportEvery == 0) report_counters();
@@ -221,7 +256,8 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
   note_depth(frame);
   while (!runtime_.stop.stop_requested()) {
     take_results();
-    const service::PaceDecision decision = pacer_.next(frame.image.stamp_ns, frames.waiting());
+    const service::PaceDecision decision =
+        one_by_one_ && !realtime_ ? pacer_.drain() : pacer_.next(frame.image.stamp_ns, frames.waiting());
     log_timeline(decision, frame.image.seq, config_.max_gap_s);
     if (decision.action == service::PaceAction::kSkipLate && late_log_.pass())
       SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
@@ -230,7 +266,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     if (decision.action == service::PaceAction::kSend) {
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
-      if (motion_) motion_->publish(frame);
+      if (motion_) motion_->publish(frame, resume_ ? resume_->stamp_ns : std::numeric_limits<std::int64_t>::min());
       if (beside_) beside_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
@@ -298,7 +334,13 @@ void CameraService::note(std::uint64_t seq) {
   newest_result_ = any_result_ ? std::max(newest_result_, seq) : seq;
   any_result_ = true;
   pacer_.answered(seq);
+  const std::size_t before = in_flight_.size();
   while (!in_flight_.empty() && in_flight_.front().seq <= seq) in_flight_.pop_front();
+  if (in_flight_.empty()) {
+    one_by_one_ = false;
+  } else if (one_by_one_ && in_flight_.size() < before) {
+    publisher_.publish(in_flight_.front());
+  }
 }
 
 void CameraService::send(const vision::RgbdImage& image) {
@@ -317,67 +359,14 @@ void CameraService::send_truth(const SourceFrame& frame) {
                 {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}}});
 }
 
+/// A service that was restarted must get the oldest first: it would take a later one for the beginning, and leave out
+/// those before.
 void CameraService::resend() {
   SPDLOG_WARN("event=frames_sent_again first={} frames={} silent_ms={}", pacer_.in_flight().front(), in_flight_.size(),
               config_.resend_after_ms);
-  for (const vision::RgbdImage& image : in_flight_) publisher_.publish(image);
+  one_by_one_ = true;
+  publisher_.publish(in_flight_.front());
   pacer_.resent();
-}
-
-void CameraService::note_depth_offset(const SourceFrame& frame) {
-  if (!frame.depth_after_color_ns) return;
-  depth_offsets_.add(*frame.depth_after_color_ns);
-  if (frames_in_ != kOffsetsToLog) return;
-  SPDLOG_INFO("event=depth_offset median_ms={:.1f} frames={}", *depth_offsets_.median_ms(), depth_offsets_.size());
-}
-
-/// Of every tenth frame; said once, and again in heartbeats and at the end.
-void CameraService::note_depth(const SourceFrame& frame) {
-  if (frames_in_ % kReportEvery == 1) depth_figures_.add(frame.image.depth, frame.image.depth_scale_m);
-  const std::optional<double> median_m = depth_figures_.median_m();
-  if (frames_in_ != kDepthToLog || !median_m) return;
-  SPDLOG_INFO("event=depth_seen median_m={:.2f} holes={:.3f}", *median_m, depth_figures_.hole_share());
-  const std::string doubt = depth_figures_.doubt(source_->info().depth_unit_given);
-  if (!doubt.empty()) SPDLOG_WARN("event=depth_unit_doubtful cause=\"{}\"", doubt);
-}
-
-void CameraService::report_counters() {
-  const auto set = [this](const char* name, std::uint64_t value) {
-    runtime_.heartbeat.set_metric(name, static_cast<double>(value));
-  };
-  set(service::metric::kFramesIn, frames_in_);
-  set(service::metric::kFramesPublished, published_);
-  set(service::metric::kFramesLate, late());
-  set(service::metric::kFramesSkipped, counters_.skipped_total());
-  set(service::metric::kFramesWithoutDepth, counters_.frames_without_depth);
-  set(service::metric::kFramesRefused, refused_);
-  for (const auto& [name, count] : left_out_.metrics(frames_in_)) set(name.c_str(), count);
-  set(service::metric::kReconnects, counters_.reconnects);
-  set(service::metric::kJpegsDropped, publisher_.jpegs().dropped());
-  set(service::metric::kResends, pacer_.resends());
-  if (const auto offset_ms = depth_offsets_.median_ms())
-    runtime_.heartbeat.set_metric(service::metric::kDepthOffsetMs, *offset_ms);
-  if (const auto median_m = depth_figures_.median_m()) {
-    runtime_.heartbeat.set_metric(service::metric::kDepthMedianM, *median_m);
-    runtime_.heartbeat.set_metric(service::metric::kDepthHoles, depth_figures_.hole_share());
-  }
-}
-
-void CameraService::write_groundtruth() {
-  if (config_.groundtruth_out.empty()) return;
-  const geometry::Trajectory poses = source_->groundtruth();
-  if (poses.empty()) {
-    SPDLOG_INFO("event=no_groundtruth uri={}", source_->info().uri);
-    return;
-  }
-  try {
-    io::write_file(
-        config_.groundtruth_out,
-        [&](std::ostream& file) { geometry::write_tum_trajectory(file, poses, geometry::TumStyle::kGroundtruth); },
-        {.named_by = io::NamedBy::kOperator});
-  } catch (const io::IoError& error) {
-    SPDLOG_ERROR("event=groundtruth_not_written cause=\"{}\"", error.what());
-  }
 }
 
 CameraService::Outcome CameraService::fail(const std::string& message) {

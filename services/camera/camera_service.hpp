@@ -23,6 +23,7 @@
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/left_out.hpp"
 #include "services/camera/core/read_ahead.hpp"
+#include "services/camera/core/resume_point.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {
@@ -44,6 +45,8 @@ struct ServiceConfig {
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;
   std::vector<std::string> beside;
+  int source_id = 0;
+  std::string resume_after;
 
   void bind(auto& binder) {
     binder.field("source", source, source_help()).option("--source");
@@ -65,6 +68,15 @@ struct ServiceConfig {
                "topics of a recording that are published with its frames: an IMU, wheels, /tf_static; rtd run fills in "
                "those of --imu, --wheel-odometry and --camera-in-base tf")
         .option("--beside");
+    binder
+        .field("source_id", source_id, {0, 2147483647},
+               "of the frames, by which others know a camera that is started again; 0: a random one")
+        .option("--source-id");
+    binder
+        .field("resume_after", resume_after,
+               "SEQ,STAMP_NS,PUBLISHED_NS of the last frame of an earlier process, behind which this one continues; "
+               "empty: from the beginning")
+        .option("--resume-after");
   }
 };
 
@@ -94,6 +106,9 @@ class CameraService {
   void open_publisher();
   void report_wait(const std::string& what);
   Outcome wait_for_others();
+  /// Goes behind the last frame of an earlier process.
+  void resume();
+  Outcome play();
   std::vector<std::string> missing() const;
   Outcome play(ReadAhead& frames);
   Outcome handle(SourceFrame frame, ReadAhead& frames);
@@ -113,6 +128,7 @@ class CameraService {
   void write_groundtruth();
   Outcome fail(const std::string& message);
   service::ExitCode finish(Outcome outcome);
+  static constexpr int kReportEvery = 10;  ///< frames
   std::uint64_t late() const { return pacer_.late() + passed_over_; }
 
   Config config_;
@@ -126,10 +142,12 @@ class CameraService {
   bus::Writer<msg::PoseStamped> truth_;
   std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
   std::optional<BesidePublisher> beside_;  ///< of a recording that has them
+  const std::optional<ResumePoint> resume_;
   const std::shared_ptr<bus::SourceGate> slam_;
   bus::Reader<msg::TrackingResult> tracking_;
+  bool one_by_one_ = true;  ///< the next frame after the result of this one, until all in flight have theirs
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
-  SourceCounters counters_;
+  SourceCounters counters_, passed_;  ///< passed_: on the way behind the last frame of an earlier process
   LeftOut left_out_;
   DepthOffsets depth_offsets_;
   DepthFigures depth_figures_;

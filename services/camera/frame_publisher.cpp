@@ -91,10 +91,10 @@ void copy_packed(const cv::Mat& image, std::uint8_t* bytes, std::size_t size) {
 }
 
 FramePublisher::FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
-                               std::function<void()> on_matched)
+                               std::function<void()> on_matched, std::uint64_t source_id)
     : bus_(bus),
       on_matched_(std::move(on_matched)),
-      source_id_(random_id()),
+      source_id_(source_id != 0 ? source_id : random_id()),
       frame_id_(bus.frame(kCameraFrame)),
       infos_(bus.writer(bus::topics::kCameraInfo)),
       jpegs_(bus, jpeg_quality, jpeg_overflow, on_matched_),
@@ -111,8 +111,8 @@ void FramePublisher::limit_jpeg_rate(double max_hz) {
 void FramePublisher::open(cv::Size size_px) {
   frames_ = bus::FrameWriter(bus_, static_cast<std::uint32_t>(size_px.width),
                              static_cast<std::uint32_t>(size_px.height), on_match(on_matched_));
+  if (!size_px_.empty()) source_id_ = random_id();
   size_px_ = size_px;
-  source_id_ = random_id();
   info_sent_ = false;
 }
 
@@ -131,10 +131,12 @@ bool FramePublisher::publish(const vision::RgbdImage& image) {
 namespace {
 
 constexpr int kMotionDepth = 64;  // of samples: a camera at 4 Hz
+constexpr auto kFoundLate = bus::RawQos::Durability::kTransientLocal;  // slam may find it after the first frame
 
 std::unique_ptr<bus::RawWriter> motion_writer(bus::RawBus& bus, const char* topic, const char* type) {
   bus::RawWriterOptions options;
   options.qos.depth = kMotionDepth;
+  options.qos.durability = kFoundLate;
   return bus.writer({topic, type}, options);
 }
 
@@ -157,8 +159,9 @@ MotionPublisher::MotionPublisher(const bus::BusOptions& options, const SourceInf
   if (info.has_wheels) wheels_ = motion_writer(*bus_, name(msg::kWheelTopic).c_str(), msg::kOdometryDdsType);
 }
 
-void MotionPublisher::publish(const SourceFrame& frame) {
+void MotionPublisher::publish(const SourceFrame& frame, std::int64_t after_ns) {
   for (const ImuReading& reading : frame.imu) {
+    if (reading.stamp_ns <= after_ns) continue;
     msg::Imu imu;
     imu.header = {msg::to_time(reading.stamp_ns), names_.camera};
     imu.orientation_covariance[0] = -1;  // it has none
@@ -167,6 +170,7 @@ void MotionPublisher::publish(const SourceFrame& frame) {
     write(*imu_, imu);
   }
   for (const WheelReading& reading : frame.wheels) {
+    if (reading.stamp_ns <= after_ns) continue;
     const auto [t, q] = msg::to_message(reading.T_odom_base);
     msg::Odometry odometry;
     odometry.header = {msg::to_time(reading.stamp_ns), names_.odom};
@@ -205,7 +209,7 @@ std::string BesidePublisher::open(const recordings::Reader& recording, const std
   }
   bus::RawWriterOptions options;
   options.qos.depth = kDepth;
-  options.qos.durability = bus::RawQos::Durability::kTransientLocal;  // slam may find it after the first frame
+  options.qos.durability = kFoundLate;
   const char* const type = found->type == "sensor_msgs/Imu" ? msg::kImuDdsType : msg::kOdometryDdsType;
   writers_[found->name] = bus_->writer({ros2::dds_topic(topic), type}, options);
   return found->name;

@@ -80,8 +80,9 @@ class MotionPublisher {
  public:
   /// Throws BusError when the bus refuses.
   MotionPublisher(const bus::BusOptions& options, const SourceInfo& info, MotionFrames names);
-  /// To be called before the frame itself is published: who waits for samples up to its stamp then seldom waits.
-  void publish(const SourceFrame& frame);
+  /// Readings later than `after_ns`. To be called before the frame itself is published: who waits for samples up to its
+  /// stamp then seldom waits.
+  void publish(const SourceFrame& frame, std::int64_t after_ns);
 
  private:
   const MotionFrames names_;
@@ -96,8 +97,10 @@ class BesidePublisher {
   /// not have one, or the source is none; BusError when the bus refuses.
   BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
                   const std::vector<std::string>& topics);
-  /// As MotionPublisher's.
+  /// Before the frame, as MotionPublisher's.
   void publish(const SourceFrame& frame);
+  /// Leaves out what belongs to the frames up to this stamp.
+  void pass_over(std::int64_t stamp_ns) { messages_->until(stamp_ns); }
 
  private:
   /// Opens the writer of a topic and gives its name in the recording.
@@ -139,9 +142,9 @@ void fill_frame(const vision::RgbdImage& image, std::uint64_t source_id, std::in
 class FramePublisher {
  public:
   /// `jpeg_overflow`: what happens when JPEGs are wanted faster than they can be encoded. `on_matched` is called on a
-  /// bus thread when readers of the frame come or go.
-  FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow,
-                 std::function<void()> on_matched);
+  /// bus thread when readers of the frame come or go. `source_id`: of the frames; 0: a random one.
+  FramePublisher(bus::Bus& bus, int jpeg_quality, concurrency::Overflow jpeg_overflow, std::function<void()> on_matched,
+                 std::uint64_t source_id = 0);
 
   /// Chooses the frame topic for images of this size, before the first frame. Throws bus::BusError when images are too
   /// large.

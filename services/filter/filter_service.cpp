@@ -194,7 +194,7 @@ void FilterService::trace(std::int64_t waiting_since_ns, std::int64_t judging_si
 /// False for a frame that is not to be processed: defective, or sent again (its features are published again).
 bool FilterService::accept(const Arrival& arrival) {
   const msg::FrameView& frame = *arrival.frame;
-  follow_camera(arrival.camera_changes);
+  follow_camera(arrival);
   if (const std::string cause = vision::defect(frame); !cause.empty()) {
     publish_no_features(frame, cause);
     return false;
@@ -234,10 +234,10 @@ void FilterService::publish_no_features(const msg::FrameView& frame, const std::
   writer_.write(*message_);
 }
 
-/// What was seen by the camera before cannot be compared with what this one sees.
-void FilterService::follow_camera(std::uint64_t changes) {
-  if (changes == camera_changes_) return;
-  camera_changes_ = changes;
+/// What was seen by the camera before cannot be compared with what this one sees, unless it is the same one, restarted.
+void FilterService::follow_camera(const Arrival& arrival) {
+  const std::uint64_t before = std::exchange(camera_id_, arrival.frame->source_id);
+  if (std::exchange(camera_changes_, arrival.camera_changes) == arrival.camera_changes || before == camera_id_) return;
   filter_.reset();
   movers_.clear();
 }

@@ -78,7 +78,7 @@ class FilterService {
   void forget_views(const msg::FrameView& frame, const char* cause);
   bool detector_gone() const;
   bool detector_there() const;
-  void follow_camera(std::uint64_t changes);
+  void follow_camera(const Arrival& arrival);
   Extraction extract(std::uint64_t seq, const vision::RgbdImage& image);
   void fill_next(const msg::FrameView& frame, const FilterResult& result, msg::DetectionUse use);
   void follow_time(const msg::FrameView& frame);
@@ -119,7 +119,7 @@ class FilterService {
 
   service::RecentMessages<msg::FeatureFrame> messages_;
   const msg::FeatureFrame* message_ = nullptr;  ///< the newest; null until there is one
-  std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0;
+  std::uint64_t published_ = 0, defective_ = 0, unpaired_ = 0, camera_changes_ = 0, camera_id_ = 0;
   bool detector_seen_ = false, detector_gone_ = false, slam_seen_ = false;
   std::atomic<bool> detector_masks_{false};                  ///< its heartbeat says that it sends masks
   std::atomic<bool> detector_ready_{false};                  ///< its heartbeat said once that it is; after the masks

@@ -147,6 +147,7 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
   recordings::Reader& recording = *recording_;
   float_step_ = float_unit_of(*topic_named(recording, topics_.depth));
   describe_rate(topics_.color);
+  info_.frames = std::min(info_.frames, topic_named(recording, topics_.depth)->messages);
   try {
     look_at_first_images(options);
     load_calibration(options);

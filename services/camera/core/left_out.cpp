@@ -28,7 +28,12 @@ bool has_depth_in_range(const vision::RgbdImage& image) {
 void LeftOut::open(std::uint64_t all, std::uint64_t most, const SourceCounters& at_opening) {
   all_ = all;
   most_ = most;
-  at_opening_ = now_ = at_opening;
+  at_opening_ = passed_ = now_ = at_opening;
+}
+
+void LeftOut::resume(std::uint64_t frames, const SourceCounters& passed) {
+  before_ = frames;
+  passed_ = now_ = passed;
 }
 
 void LeftOut::add(const ReadItem& item) {
@@ -43,14 +48,18 @@ void LeftOut::add(const vision::RgbdImage& image) {
 
 SourceCounters LeftOut::counters(std::uint64_t frames_in) const {
   const bool whole = all_ == 0 || (ended_ && (most_ == 0 || frames_in < most_));
-  const double share = whole ? 1 : std::min(1.0, static_cast<double>(frames_in) / static_cast<double>(all_));
-  const auto met = [share](std::uint64_t now, std::uint64_t then) {
-    return now - then + static_cast<std::uint64_t>(std::llround(static_cast<double>(then) * share));
+  const auto part = [this](std::uint64_t frames) {
+    return all_ == 0 ? 0 : std::min(1.0, static_cast<double>(frames) / static_cast<double>(all_));
+  };
+  const double end = whole ? 1 : part(frames_in), begin = part(before_);
+  const auto met = [=](std::uint64_t now, std::uint64_t passed, std::uint64_t then) {
+    const auto listed = [then](double share) { return std::llround(static_cast<double>(then) * share); };
+    return now - passed + static_cast<std::uint64_t>(std::max(0LL, listed(end) - listed(begin)));
   };
   SourceCounters counters = now_;
   for (std::size_t i = 0; i < kSkipReasons; ++i)
-    counters.skipped.at(i) = met(now_.skipped.at(i), at_opening_.skipped.at(i));
-  counters.depth_alone = met(now_.depth_alone, at_opening_.depth_alone);
+    counters.skipped.at(i) = met(now_.skipped.at(i), passed_.skipped.at(i), at_opening_.skipped.at(i));
+  counters.depth_alone = met(now_.depth_alone, passed_.depth_alone, at_opening_.depth_alone);
   return counters;
 }
 

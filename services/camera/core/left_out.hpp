@@ -18,6 +18,8 @@ class LeftOut {
   /// `all`: frames that the source expects, 0 = unknown; `most`: to be played, 0 = all; `at_opening`: its counters once
   /// it is open. A list is read as a whole then, so of what was left out the share counts that has been played.
   void open(std::uint64_t all, std::uint64_t most, const SourceCounters& at_opening);
+  /// An earlier process has played so many frames, and this one has met `passed` on the way behind them.
+  void resume(std::uint64_t frames, const SourceCounters& passed);
   void add(const ReadItem& item);
   void add(const vision::RgbdImage& image);
 
@@ -30,8 +32,8 @@ class LeftOut {
   const std::string& first() const { return first_; }
 
  private:
-  std::uint64_t all_ = 0, most_ = 0, out_of_range_ = 0;
-  SourceCounters at_opening_, now_;
+  std::uint64_t all_ = 0, most_ = 0, before_ = 0, out_of_range_ = 0;
+  SourceCounters at_opening_, passed_, now_;
   std::string first_;
   bool ended_ = false;
 };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/collector.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <utility>
 
 #include "common/service/monotonic_clock.hpp"
@@ -29,6 +31,7 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       builder_(store),
       samples_(options.samples, options.total),
       total_(options.total),
+      held_(options.held),
       keep_features_(options.keep_features),
       with_masks_(options.masks) {
   if (options.secured) {
@@ -66,7 +69,7 @@ void Collector::add(const msg::TrackingResult& result) {
 void Collector::add(const msg::FeatureFrame& features) {
   const std::lock_guard lock(mutex_);
   builder_.add(features);
-  samples_.add_features(builder_.run_seq(features.seq), features);
+  samples_.add_features(features.seq, features);
   if (keep_features_ && judged_.size() < kMaxJudgedFrames) {
     judged_.try_emplace(features.stamp_ns, run_record::judged({features.features.data(), features.count}));
   }
@@ -88,14 +91,13 @@ void Collector::add(const msg::Image& masks) {
 }
 
 void Collector::add_image(const std::shared_ptr<const msg::FrameView>& frame) {
-  std::uint64_t seq = 0;
   {
     const std::lock_guard lock(mutex_);
-    seq = builder_.run_seq(frame->seq);
-    if (!samples_.wants(seq)) return;
-    if (with_masks_) samples_.expect_masks(seq, frame->stamp_ns);
+    builder_.add(*frame);
+    if (!samples_.wants(frame->seq)) return;
+    if (with_masks_) samples_.expect_masks(frame->seq, frame->stamp_ns);
   }
-  images_.push({seq, frame});
+  images_.push(frame);
 }
 
 service::ProcessGone Collector::process_gone() const {
@@ -148,6 +150,16 @@ std::string Collector::camera_message() const {
   return builder_.camera_message();
 }
 
+std::optional<FramePlace> Collector::last_seen() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.last_seen();
+}
+
+std::optional<FramePlace> Collector::last_answered() const {
+  const std::lock_guard lock(mutex_);
+  return builder_.last_answered();
+}
+
 void Collector::close() {
   const std::lock_guard lock(mutex_);
   builder_.close();
@@ -156,6 +168,8 @@ void Collector::close() {
 void Collector::fill(run_record::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);
+  const std::uint64_t met = record.frames_in + record.frames_left_out;
+  record.frames_not_played = held_ - std::min(held_, met);
   record.samples = samples_.samples();
   record.judged_frames.clear();
   for (const auto& [stamp_ns, features] : judged_) record.judged_frames.push_back({stamp_ns, features});
@@ -163,9 +177,9 @@ void Collector::fill(run_record::RunRecord& record) const {
 
 void Collector::encode_samples() {
   while (const auto image = images_.pop()) {
-    std::vector<std::uint8_t> jpeg = jpeg_of(*image->frame);
+    std::vector<std::uint8_t> jpeg = jpeg_of(**image);
     const std::lock_guard lock(mutex_);
-    if (!jpeg.empty()) samples_.add_image(image->seq, std::move(jpeg));
+    if (!jpeg.empty()) samples_.add_image((*image)->seq, std::move(jpeg));
   }
 }
 

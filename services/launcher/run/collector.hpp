@@ -23,6 +23,7 @@ class Collector {
   struct Options {
     std::uint64_t samples = 12;
     std::uint64_t total = 0;     ///< frames expected, 0 = unknown
+    std::uint64_t held = 0;      ///< frames that the source has, 0 = as many as it gives
     bool keep_features = false;  ///< for RunRecord::judged_frames
     bool masks = false;          ///< of people in the samples: the detector computes them for each reader
     bool secured = false;        ///< a heartbeat of camera, filter or slam counts when its sender may write their topic
@@ -46,6 +47,9 @@ class Collector {
   bool tracked_any() const;
   bool any_frame() const;  ///< the camera has given one
   std::string camera_message() const;
+  /// As those of RecordBuilder.
+  std::optional<FramePlace> last_seen() const;
+  std::optional<FramePlace> last_answered() const;
   /// The run ends: frames of another source than its own no longer count.
   void close();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the
@@ -69,14 +73,10 @@ class Collector {
   service::PeerTable peers_;  ///< whose heartbeats count
   RecordBuilder builder_;
   SampleKeeper samples_;
-  std::uint64_t total_;
+  std::uint64_t total_, held_;
   bool keep_features_, with_masks_;
   std::map<std::int64_t, std::vector<run_record::JudgedFeature>> judged_;  ///< by stamp
-  struct Image {
-    std::uint64_t seq = 0;  ///< within the run
-    std::shared_ptr<const msg::FrameView> frame;
-  };
-  concurrency::BoundedQueue<Image> images_{2, concurrency::Overflow::kDropOldest};
+  concurrency::BoundedQueue<std::shared_ptr<const msg::FrameView>> images_{2, concurrency::Overflow::kDropOldest};
   std::thread encoder_;
   bus::Reader<msg::TrackingResult> tracking_reader_;
   bus::Reader<msg::FeatureFrame> features_reader_;

@@ -153,7 +153,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
-  if (outcome == RunOutcome::kComplete && !not_used.empty()) terminal.warn("rtd: " + not_used);
+  if (outcome != RunOutcome::kInterrupted && !not_used.empty()) terminal.warn("rtd: " + not_used);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
   session.keep_viewer();
   end.begin(result.code,

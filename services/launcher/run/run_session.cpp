@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/run/run_session.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -30,7 +33,7 @@ double span_s(const std::vector<run_record::FrameRecord>& frames) {
 }
 
 std::string restart_effect(const std::string& service) {
-  if (service == "camera") return ": its frames count from 0 again";
+  if (service == "camera") return ": it continues behind the last frame";
   if (service == "slam") return ": it continues with the map from its last checkpoint, else with a new one";
   if (service == "record") return ": it continues in a file beside";
   return service == "dense" ? ": static_map.ply starts again" : "";
@@ -47,6 +50,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
       collector_(bus, frames_,
                  {.samples = static_cast<std::uint64_t>(setup.launcher.samples),
                   .total = setup.total_frames,
+                  .held = setup.held_frames,
                   .keep_features = run_record::has_true_masks(setup.source),
                   .masks = setup.reports_masks(),
                   .secured = setup.bus_options.security.enabled()}),
@@ -68,9 +72,13 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
     logs_.hide("depth_unit_doubtful");
   }
   started_ = now();
-  for (std::size_t i = 0; i + 1 < plans.size(); ++i) supervisor_.start(counted(plans[i]), now());
+  for (std::size_t i = 0; i + 1 < plans.size(); ++i) {
+    if (plans[i].awaited) awaited_.push_back(plans[i].name);
+    supervisor_.start(counted(plans[i]), now());
+  }
   ServicePlan source = plans.back();
   source.has_served = [this] { return collector_.any_frame(); };
+  if (!setup_.replay) source.when_restarted = [this] { return continue_camera(); };
   supervise(source);
   terminal_.end_status();
   return supervisor_.outcome();
@@ -86,6 +94,21 @@ ServicePlan RunSession::counted(ServicePlan plan) {
     return arguments;
   };
   return plan;
+}
+
+/// Where it stopped. A stored frame that may not have been answered is sent again; what a running camera gives next is
+/// another frame.
+std::vector<std::string> RunSession::continue_camera() const {
+  std::vector<std::string> awaited = awaited_;
+  std::erase_if(awaited, [this](const std::string& service) { return !supervisor_.runs(service); });
+  awaited.emplace_back("launcher");
+  std::vector<std::string> arguments = {"--wait-for", fmt::format("none,{}", fmt::join(awaited, ","))};
+  const bool again = setup_.pace != "realtime" && !setup_.running_camera;
+  if (const auto last = again ? collector_.last_answered() : collector_.last_seen()) {
+    arguments.insert(arguments.end(), {"--resume-after", fmt::format("{},{},{}", last->seq, last->stamp_ns,
+                                                                     last->published_ns)});
+  }
+  return arguments;
 }
 
 /// Two runs in one domain would mix their frames until the services notice. A replay of another camera's topics is what

@@ -53,6 +53,7 @@ class RunSession {
   void sample_memory(Milliseconds now);
   void note(const std::string& text);
   ServicePlan counted(ServicePlan plan);
+  std::vector<std::string> continue_camera() const;
 
   const RunSetup& setup_;
   service::InterruptSignals& signals_;
@@ -66,6 +67,7 @@ class RunSession {
   std::vector<std::string> events_;
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
+  std::vector<std::string> awaited_;  ///< services that the source waits for
   std::string viewer_line_;  ///< its addresses, as it printed them
   bool page_was_open_ = false, wait_shown_ = false;
   int slam_restarts_ = 0, slam_worlds_lost_ = 0;

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <random>
 
 #include "common/bus/host/port_check.hpp"
 #include "common/camera/source_factory.hpp"
@@ -226,7 +227,8 @@ std::vector<std::string> filter_arguments(const RunSetup& setup) {
 std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vector<std::string>& wait_for) {
   std::vector<std::string> arguments = {"--source",          setup.source,
                                         "--wait-for",        fmt::format("{},launcher", fmt::join(wait_for, ",")),
-                                        "--groundtruth-out", setup.groundtruth_path()};
+                                        "--groundtruth-out", setup.groundtruth_path(),
+                                        "--source-id",       std::to_string(std::random_device()() >> 1U)};
   if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
   if (!setup.beside.empty())
     arguments.insert(arguments.end(), {"--beside", fmt::format("{}", fmt::join(setup.beside, ","))});
@@ -296,7 +298,7 @@ RunSetup prepare_run(const RunOptions& options) {
   if (!setup.replay.robot.empty()) setup.config.given.push_back({"bus.robot", "--robot", {setup.replay.robot}});
   if (setup.replay) setup.bus_options.robot = setup.replay.robot;
   if (setup.replay) {
-    setup.total_frames = setup.replay.frames;
+    setup.total_frames = setup.held_frames = setup.replay.frames;
   } else {
     look_at_source(setup);
   }
@@ -346,6 +348,7 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (setup.dense) plans.push_back(plan(setup, "dense", ServiceRole::kOptional, dense_arguments(setup)));
   std::vector<std::string> wait_for;
   for (ServicePlan& service : plans) {
+    service.awaited = true;
     wait_for.push_back(service.name);
     if (setup.pace == "realtime" && (service.name == "detector" || service.name == "dense"))
       service.niceness = kRealtimeNiceness;
@@ -363,10 +366,8 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   if (setup.replay) {
     plans.push_back(plan(setup, "replay", ServiceRole::kSource, setup.replay.arguments(wait_for)));
   } else {
-    const bool endless = setup.total_frames == 0;
-    plans.push_back(
-        plan(setup, "camera", endless ? ServiceRole::kLive : ServiceRole::kSource, camera_arguments(setup, wait_for)));
-    plans.back().when_restarted = [] { return std::vector<std::string>{"--wait-for", "none"}; };  // the others run
+    const ServiceRole role = setup.held_frames > 0 ? ServiceRole::kSource : ServiceRole::kLive;
+    plans.push_back(plan(setup, "camera", role, camera_arguments(setup, wait_for)));
   }
   return plans;
 }

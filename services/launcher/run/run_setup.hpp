@@ -120,6 +120,8 @@ struct RunSetup : RunOptions {
   bus::BusOptions bus_options;                    ///< what `bus` and the configuration give
   std::map<std::string, std::string> vendors_of;  ///< services that use another DDS
   std::uint64_t total_frames = 0;                 ///< 0 = unknown or endless
+  std::uint64_t held_frames = 0;                  ///< those of them that are stored, or of a scene with an end
+  bool running_camera = false;                    ///< what it has not given cannot be had again
   std::vector<std::string> source_notes;          ///< what the source was taken for
   std::vector<std::string> source_remarks;        ///< what is wrong with it although it is played
   std::string depth_doubt;                        ///< why the depth unit is likely another; empty: it is not

@@ -94,10 +94,13 @@ void look_at_source(RunSetup& setup) {
     camera::check_live_uri(setup.source);
     require_camera(setup);
     setup.total_frames = setup.frames;
+    setup.running_camera =
+        !camera::is_device(setup.source) || !camera::parse_device_uri(setup.source).recorded;
     return;
   }
   const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);
   setup.total_frames = limited(source->info().frames, setup.frames);
+  if (source->info().frames > 0) setup.held_frames = setup.total_frames;
   setup.source_notes = source->info().notes;
   setup.source_remarks = source->info().remarks;
   if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);

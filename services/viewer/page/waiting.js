@@ -8,7 +8,7 @@ import { vendorName } from "./format.js";
 
 const kStale_ms = 3000;
 const kSources = ["camera", "replay"];
-const kEnded = ["finished", "gone"];
+const kStopped = ["finished", "gone"];
 
 const kStates = {
   ok: ["ok", "Tracking", ""],
@@ -52,7 +52,7 @@ function ofServices(robot, hello) {
   const failed = robot.services.find((service) => service.state === "failed");
   if (failed) return report("bad", `${failed.name} failed`, failed.message || "Its log says why.");
   if (robot.tracking) return null;
-  const running = (name) => robot.services.some((service) => service.name === name && !kEnded.includes(service.state));
+  const running = (name) => robot.services.some((service) => service.name === name && !kStopped.includes(service.state));
   if (!kSources.some(running)) return report("wait", "Waiting for a camera", "Neither a camera nor a replay is running.");
   if (!running("slam")) return report("wait", "Waiting for slam", "Images arrive, but rtd-slam is not running.");
   const busy = robot.services.filter((service) => service.state === "starting" || service.state === "ready");
@@ -67,18 +67,22 @@ function ofTracking(robot, now_ms) {
   return report(level, title, [detail, ...reasons(robot)].join(" ").trim());
 }
 
-/** Whether its camera or recording has come to its end. */
-export function hasEnded({ playback, services }) {
-  const sources = services.filter((service) => kSources.includes(service.name));
-  return playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => kEnded.includes(state)));
+const sourcesOf = ({ services }) => services.filter(({ name }) => kSources.includes(name));
+
+/** Whether its camera or recording has come to its end: one that died has not. */
+export function hasEnded(robot) {
+  const sources = sourcesOf(robot);
+  return robot.playback?.state === "ended" || (sources.length > 0 && sources.every(({ state }) => state === "finished"));
 }
 
 function withoutPoses(robot, age_ms) {
   const { playback, services } = robot;
   if (playback?.state === "paused") return { ...report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`), quiet: true };
   if (hasEnded(robot)) return { ...report("wait", "The source has ended", "Its map stays as long as the viewer runs."), quiet: true };
+  const sources = sourcesOf(robot), gone = sources.find(({ state }) => state === "gone");
+  if (gone && sources.every(({ state }) => kStopped.includes(state))) return report("bad", `The ${gone.name} is gone`, "It sends no heartbeat: it died, was killed, or its host is away.");
   const slam = services.find((service) => service.name === "slam");
   if (!slam && playback) return { ...report("wait", "No pose", `for ${Math.round(age_ms / 1000)} s of the recording`), quiet: true };
-  if (!slam || kEnded.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");
+  if (!slam || kStopped.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");
   return report("warn", "No pose", `for ${Math.round(age_ms / 1000)} s. ${slam.message}`.trim());
 }

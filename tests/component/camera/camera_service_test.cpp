@@ -3,6 +3,7 @@
 #include "services/camera/camera_service.hpp"
 
 #include <gmock/gmock.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -18,6 +19,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
+#include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/inbox.hpp"
 
@@ -168,7 +170,7 @@ TEST_F(CameraServiceTest, asap_fills_its_window_and_never_exceeds_it) {
   config_.resend_after_ms = 60000;
   auto running = start(service::Pace::kAsap);
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    ASSERT_TRUE(tracker.wait_for_messages(std::min<std::size_t>(30, seq + 3))) << "the window is not filled";
+    ASSERT_TRUE(tracker.wait_for_messages(seq == 0 ? 1 : std::min<std::size_t>(30, seq + 3))) << "the window is not filled";
     tracker.answer(seq);
   }
   EXPECT_EQ(running.get(), service::kOk);
@@ -187,13 +189,13 @@ TEST_F(CameraServiceTest, sends_the_frame_again_while_no_result_comes) {
   EXPECT_EQ(metric("frames_published"), 3);
 }
 
-TEST_F(CameraServiceTest, sends_the_whole_window_again_in_order) {
+TEST_F(CameraServiceTest, sends_the_window_again_one_by_one) {
   FakeTracker tracker(*bus_);
-  tracker.answers = [](std::uint64_t message, std::uint64_t) { return message >= 3; };
-  config_.source = std::string(kTinyScene) + "3";
-  config_.resend_after_ms = 100;
+  tracker.answers = [](std::uint64_t message, std::uint64_t) { return message == 0 || message >= 5; };
+  config_.source = std::string(kTinyScene) + "5";
+  config_.resend_after_ms = 300;
   EXPECT_EQ(run(service::Pace::kAsap), service::kOk);
-  EXPECT_THAT(tracker.seqs(), ElementsAre(0, 1, 2, 0, 1, 2));
+  EXPECT_THAT(tracker.seqs(), ElementsAre(0, 1, 2, 3, 1, 1, 2, 3, 4)) << "none before the one before it has a result";
 }
 
 TEST_F(CameraServiceTest, fails_when_no_result_ever_comes) {
@@ -214,6 +216,64 @@ TEST_F(CameraServiceTest, realtime_does_not_wait_for_results) {
   EXPECT_EQ(metric("frames_in"), 10);
   EXPECT_EQ(metric("frames_published") + metric("frames_late"), 10);
   EXPECT_EQ(tracker.seqs().size(), static_cast<std::size_t>(metric("frames_published")));
+}
+
+/// Plays 20 frames as an earlier process of the camera, and continues.
+class ResumedCamera : public CameraServiceTest {
+ protected:
+  ResumedCamera() {
+    config_.source = std::string(kTinyScene) + "100&fps=100";
+    config_.source_id = 5;
+    config_.frames = 20;
+  }
+  void begin() {
+    EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
+    config_.frames = 0;
+  }
+  service::ExitCode resume(service::Pace pace, std::chrono::nanoseconds away) {
+    config_.resume_after =
+        fmt::format("19,{},{}", static_cast<std::int64_t>(tracker_->last().stamp_ns), service::monotonic_ns() - away.count());
+    return run(pace);
+  }
+  std::optional<FakeTracker> tracker_;
+  void SetUp() override {
+    CameraServiceTest::SetUp();
+    tracker_.emplace(*bus_);
+  }
+  void TearDown() override {
+    tracker_.reset();
+    CameraServiceTest::TearDown();
+  }
+};
+
+TEST_F(ResumedCamera, gives_every_frame_once_in_lockstep_as_the_same_source) {
+  begin();
+  EXPECT_EQ(resume(service::Pace::kLockstep, std::chrono::seconds(1)), service::kOk);
+  EXPECT_THAT(tracker_->seqs(), ElementsAreArray(counting_to(100)));
+  EXPECT_EQ(static_cast<std::uint64_t>(tracker_->last().source_id), 5U);
+  EXPECT_EQ(metric("frames_in"), 100);
+  EXPECT_EQ(metric("frames_published"), 80);
+  config_.frames = 20;
+  EXPECT_EQ(run(service::Pace::kLockstep), service::kOk) << "behind its last frame";
+  EXPECT_EQ(tracker_->seqs().size(), 100U);
+}
+
+TEST_F(ResumedCamera, continues_in_realtime_where_the_recording_would_be_now) {
+  config_.source = std::string(kTinyScene) + "0&fps=100";
+  begin();
+  auto running =
+      std::async(std::launch::async, [this] { return resume(service::Pace::kRealtime, std::chrono::milliseconds(300)); });
+  EXPECT_TRUE(tracker_->wait_for_messages(22));
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
+  EXPECT_GE(tracker_->seqs().at(20), 49U);
+  EXPECT_EQ(metric("frames_published") + metric("frames_late"), metric("frames_in") - 20) << "all are accounted for";
+}
+
+TEST_F(ResumedCamera, refuses_a_place_that_it_cannot_read) {
+  config_.resume_after = "19,soon";
+  EXPECT_THAT([this] { run(service::Pace::kLockstep); },
+              ThrowsMessage<service::ConfigError>(HasSubstr("camera.resume_after: '19,soon'")));
 }
 
 TEST_F(CameraServiceTest, frame_carries_the_image_and_its_calibration) {

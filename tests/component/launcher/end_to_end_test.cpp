@@ -246,21 +246,6 @@ TEST_F(EndToEndTest, ctrl_c_ends_an_endless_run_within_two_seconds_with_its_resu
   EXPECT_LT(took, std::chrono::seconds(2));
 }
 
-TEST_F(EndToEndTest, the_camera_of_an_endless_run_is_restarted_and_slam_keeps_its_map) {
-  rtd_.start(arguments(72, "synthetic:office?frames=0", {"--detector", "off"}));
-  ASSERT_TRUE(wait_for_frames()) << rtd_.output();
-  rtd_.wait_for("never printed", std::chrono::seconds(1));
-  ASSERT_EQ(::kill(pid_of("camera"), SIGKILL), 0);
-  EXPECT_TRUE(rtd_.wait_for("camera restarted (1st time): its frames count from 0 again"));
-  EXPECT_TRUE(wait_for_log("slam", "event=source_restarted")) << rtd_.output();
-  rtd_.wait_for("never printed", std::chrono::seconds(1));
-  rtd_.interrupt();
-  EXPECT_EQ(rtd_.wait(), 130);
-  const std::string log = text_of(out_ + "/logs/slam.log");
-  EXPECT_EQ(log.find("event=map_started"), log.rfind("event=map_started")) << "one map";
-  EXPECT_GT(report()["frames_tracked"], 20) << "of both lives of the camera";
-}
-
 TEST_F(EndToEndTest, a_missing_folder_is_named) {
   EXPECT_EQ(rtd_.run(arguments(64, "tum:/nonexistent/folder")), 2);
   EXPECT_THAT(rtd_.output(), HasSubstr("/nonexistent/folder"));

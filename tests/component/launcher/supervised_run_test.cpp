@@ -152,14 +152,19 @@ TEST_F(SupervisedRunTest, a_camera_that_never_gave_a_frame_is_not_restarted) {
                                    HasSubstr("no frame within 30 s"), Not(HasSubstr("camera restarted"))));
 }
 
-TEST_F(SupervisedRunTest, a_live_camera_that_is_restarted_does_not_wait) {
-  const std::string marker = scratch_ / "died";
-  script("camera", "if [ ! -e " + marker + " ]; then touch " + marker + "; kill -KILL $$; fi; echo \"$@\"");
-  std::vector<std::string> endless = arguments();
-  endless[2] = "synthetic:office?frames=0";
-  rtd_.run(endless);
-  EXPECT_THAT(log("camera"), HasSubstr("--wait-for filter,slam"));
-  EXPECT_THAT(log("camera"), HasSubstr("--wait-for none"));
+TEST_F(SupervisedRunTest, a_camera_that_crashed_is_started_again_as_the_same_source) {
+  for (const char* source : {"synthetic:office?frames=0", "synthetic:office?frames=5"}) {
+    const std::string marker = scratch_ / "died";
+    fs::remove(marker);
+    script("camera", "echo \"$@\"; if [ ! -e " + marker + " ]; then touch " + marker + "; kill -ABRT $$; fi");
+    std::vector<std::string> run = arguments();
+    run[2] = source;
+    rtd_.run(run);
+    std::smatch id;
+    const std::string given = log("camera");
+    ASSERT_TRUE(std::regex_search(given, id, std::regex("--source-id ([1-9][0-9]*)"))) << given;
+    EXPECT_THAT(given, HasSubstr("--source-id " + id.str(1) + " --wait-for none,filter,slam,launcher\n"));
+  }
 }
 
 TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why) {
@@ -223,7 +228,9 @@ TEST_F(SupervisedRunTest, ctrl_c_also_reaches_a_run_that_a_shell_put_into_the_ba
 TEST_F(SupervisedRunTest, quiet_shows_problems_only) {
   script("camera", "echo '12:00:00.000 warning camera event=frame_skipped file=x.png'; sleep 0.3");
   rtd_.run(arguments({"--quiet"}));
-  EXPECT_EQ(rtd_.output(), "  warning camera event=frame_skipped file=x.png\nrtd: no frame got a pose\n");
+  EXPECT_EQ(rtd_.output(),
+            "  warning camera event=frame_skipped file=x.png\nrtd: no frame got a pose\nrtd: only 0 of 5 frames were used; 5 "
+            "x not_played: the run ended before them: the events say why\n");
 }
 
 TEST_F(SupervisedRunTest, a_missing_service_is_named_before_anything_starts) {

@@ -46,6 +46,17 @@ TEST(LeftOut, counts_what_a_list_left_out_by_the_share_that_was_played) {
   EXPECT_THAT(whole.metrics(95), Contains(Pair("left_out.stamp_backwards", 45U)));
 }
 
+TEST(LeftOut, counts_from_where_an_earlier_process_stopped) {
+  const SourceCounters of_the_list = skipped(SkipReason::kStampBackwards, 40);
+  const SourceCounters passed = skipped(SkipReason::kStampBackwards, 43), at_the_end = skipped(SkipReason::kStampBackwards, 45);
+  LeftOut left_out;
+  left_out.open(100, 0, of_the_list);
+  left_out.resume(25, passed);
+  EXPECT_EQ(left_out.counters(25).frames_left_out(), 0U);
+  left_out.add(end_of_source(at_the_end));
+  EXPECT_EQ(left_out.counters(95).frames_left_out(), 32U) << "three quarters of the list, and two of 45";
+}
+
 TEST(LeftOut, colour_at_twice_the_rate_of_depth_leaves_nothing_out) {
   SourceCounters counters = skipped(SkipReason::kNoDepthPartner, 50);
   EXPECT_EQ(counters.frames_left_out(), 0U);

@@ -58,6 +58,13 @@ TEST(FrameUse, frames_that_were_left_out_count) {
   EXPECT_TRUE(run_record::frame_use(run).too_few());
 }
 
+TEST(FrameUse, frames_that_the_run_did_not_come_to_count) {
+  run_record::RunRecord run = fabricated_run();
+  run.frames_not_played = 100;
+  EXPECT_EQ(run_record::frame_use(run).text(), "200 given, 99 used, 94 with pose");
+  EXPECT_TRUE(run_record::frame_use(run).too_few());
+}
+
 TEST(FrameUse, frames_without_depth_in_range_are_not_used) {
   run_record::RunRecord run = fabricated_run();
   run.frames.clear();
@@ -77,6 +84,7 @@ class RunJson : public testing::Test {
     run_.samples = {fabricated_sample(3), fabricated_sample(4)};
     run_.samples[1].masks = {16, 12, std::vector<std::uint8_t>(16 * 12, 1)};
     run_.frames_left_out = 7;
+    run_.frames_not_played = 11;
     run_.left_out = {{"stamp_backwards", 5}, {"stamp_doubled", 2}};
     run_.judged_frames = {{run_.frames[0].tracking.stamp_ns, {{1.5F, 2.25F, true}, {-0.1F, 479.0F, false}}}};
     run_.frames[2].tracking.T_world_camera.translation_m[1] = std::numeric_limits<double>::quiet_NaN();

@@ -36,6 +36,9 @@ TEST(WhyNotUsed, names_causes_behind_the_source_too) {
   run_record::RunRecord record = run_of(10, 0);
   record.frames_out_of_range = 9;
   EXPECT_THAT(why_not_used(record, ""), HasSubstr("9 x out_of_range: no pixel has a depth between 0.1 and 20 m"));
+  record = run_of(20, 0);
+  record.frames_not_played = 80;
+  EXPECT_THAT(why_not_used(record, ""), StartsWith("only 20 of 100 frames were used; 80 x not_played: the run ended"));
   record = run_of(10, 0);
   record.frames_dropped = 8;
   record.drops["camera.late"] = 7;

@@ -126,22 +126,38 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   EXPECT_EQ(builder.live().dropped, 9U) << "the detector only ever looks at the newest frame";
 }
 
-TEST(record_builder, frames_of_a_restarted_camera_follow_those_before) {
+TEST(record_builder, a_restarted_camera_counts_its_frames_on) {
   FrameList store;
   RecordBuilder builder(store);
-  builder.add(status_of("camera", 7, {{"frames_in", 3}}));
+  builder.add(status_of("camera", 7, {{"frames_in", 3}, {"frames_late", 1}}));
   for (const std::uint64_t seq : {0, 1, 2}) builder.add(result_of(seq));
-  builder.add(status_of("camera", 8, {}));
-  EXPECT_EQ(builder.run_seq(0), 3U);
-  builder.add(result_of(0, msg::TrackingState::kLost));
-  builder.add(result_of(1));
-  builder.add(status_of("camera", 8, {{"frames_in", 4}}));
+  builder.add(status_of("camera", 8, {{"frames_late", 1}}));
+  EXPECT_EQ(builder.frames_in(), 3U);
+  for (const std::uint64_t seq : {2, 5}) builder.add(result_of(seq));
+  builder.add(status_of("camera", 8, {{"frames_in", 7}, {"frames_late", 2}}));
   run_record::RunRecord record;
   builder.fill(record);
-  EXPECT_THAT(seqs(record), ElementsAre(0, 1, 2, 0, 1));
-  EXPECT_EQ(record.frames.at(3).tracking.state, msg::TrackingState::kLost);
+  EXPECT_THAT(seqs(record), ElementsAre(0, 1, 2, 5));
   EXPECT_EQ(record.frames_in, 7U);
-  EXPECT_EQ(record.frames_dropped, 2U);
+  EXPECT_EQ(record.frames_dropped, 3U);
+  EXPECT_EQ(record.drops.at("camera.late"), 3);
+}
+
+TEST(record_builder, knows_where_a_camera_stopped) {
+  FrameList store;
+  RecordBuilder builder(store);
+  EXPECT_FALSE(builder.last_seen() || builder.last_answered());
+  builder.add(result_of(3));
+  builder.add(*features_of(4));
+  msg::FrameView frame;
+  frame.seq = 5;
+  frame.stamp_ns = 55;
+  builder.add(frame);
+  builder.add(result_of(2));
+  EXPECT_EQ(builder.last_answered()->seq, 3U);
+  EXPECT_EQ(builder.last_answered()->published_ns, result_of(3).published_ns);
+  EXPECT_EQ(builder.last_seen()->seq, 5U);
+  EXPECT_EQ(builder.last_seen()->stamp_ns, 55);
 }
 
 TEST(record_builder, knows_whether_anything_was_tracked) {

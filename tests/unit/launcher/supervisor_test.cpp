@@ -239,6 +239,29 @@ TEST_F(SupervisorTest, fails_when_the_source_fails) {
   EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
 }
 
+TEST_F(SupervisorTest, a_source_that_crashes_continues_where_it_can_and_one_that_gives_up_does_not) {
+  ServicePlan camera{"camera", {"rtd-camera"}, ServiceRole::kSource};
+  camera.when_restarted = [] { return std::vector<std::string>{"--resume-after", "20,1,2"}; };
+  supervisor.start(camera, now);
+  advance(milliseconds(6000));
+  host.end("camera", {0, 6});
+  advance(milliseconds(10));
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kRunning);
+  EXPECT_THAT(host.arguments, ElementsAre("--resume-after", "20,1,2"));
+  host.end("camera", {1, 0});
+  advance(milliseconds(3000));
+  EXPECT_EQ(restarts("camera"), 1);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+}
+
+TEST_F(SupervisorTest, fails_when_a_source_that_cannot_continue_crashes) {
+  start_all();
+  host.end("camera", {0, 6});
+  advance(milliseconds(3000));
+  EXPECT_EQ(restarts("camera"), 0);
+  EXPECT_EQ(supervisor.outcome(), RunOutcome::kFailed);
+}
+
 TEST_F(SupervisorTest, restarts_a_live_camera_that_dies_and_ends_with_one_that_ends) {
   supervisor.start({"camera", {"rtd-camera"}, ServiceRole::kLive}, now);
   advance(milliseconds(6000));

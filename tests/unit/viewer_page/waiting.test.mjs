@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { RobotState } from "../../../services/viewer/page/session.js";
-import { situation } from "../../../services/viewer/page/waiting.js";
+import { hasEnded, situation } from "../../../services/viewer/page/waiting.js";
 
 const open = { state: "open", address: "ws://host/live", retry_s: 0 };
 const hello = { protocol: 1, domain: 3, vendor: "fastdds" };
@@ -53,6 +53,8 @@ test("when no pose comes, the reason: paused, ended, slam gone, unknown", () => 
                            now_ms: 10_000 }).quiet, true);
   assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "ended" } }), 10_000), "The source has ended");
   assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 10_000), "The source has ended");
+  assert.equal(title(robotWith([service("camera", "gone"), service("slam")], tracked("ok")), 10_000), "The camera is gone");
+  assert.equal(hasEnded(robotWith([service("camera", "gone")])), false, "one that died has not come to its end");
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")], tracked("ok")), 10_000), "slam is gone");
   const sparse = robotWith([service("replay")], { ...tracked("ok"), playback: { state: "playing", position_s: 5 } });
   assert.deepEqual([title(sparse, 4000), situation({ connection: open, hello, robot: sparse, now_ms: 4000 }).level], ["No pose", "wait"],

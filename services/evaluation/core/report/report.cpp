@@ -252,6 +252,7 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["dds"] = text_or_null(run.dds);
   report["frames_given"] = summary.frames.given;
   report["frames_in"] = run.frames_in;
+  report["frames_not_played"] = run.frames_not_played;
   report["frames_used"] = summary.frames.used;
   report["frames_tracked"] = summary.frames.with_pose;
   report["frames_dropped"] = run.frames_dropped;

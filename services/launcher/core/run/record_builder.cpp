@@ -58,9 +58,18 @@ double frames_per_second(const std::deque<msg::TrackingResult>& results) {
   return span_s > 0 ? static_cast<double>(results.size() - 1) / span_s : 0.0;
 }
 
+FramePlace frame_place(const auto& message) {
+  return {message.seq, message.stamp_ns, message.published_ns};
+}
+
+void advance(std::optional<FramePlace>& last, const FramePlace& place) {
+  if (!last || place.seq > last->seq) last = place;
+}
+
 }  // namespace
 
-RecordBuilder::Frame* RecordBuilder::frame_of(std::uint64_t seq) {
+RecordBuilder::Frame* RecordBuilder::frame_of(const FramePlace& place) {
+  const std::uint64_t seq = place.seq;
   if (seq < end_of_stored_ || seq >= end_of_source_.value_or(UINT64_MAX)) return nullptr;
   const bool first = end_of_seen_ == 0;  // a replay may begin anywhere
   if (seq >= (first ? kFirstAtMost : end_of_seen_ + kFarthestAhead)) {
@@ -69,6 +78,7 @@ RecordBuilder::Frame* RecordBuilder::frame_of(std::uint64_t seq) {
     return nullptr;
   }
   end_of_seen_ = std::max(end_of_seen_, seq + 1);
+  advance(last_seen_, place);
   Frame& frame = frames_[seq];
   return &frame;
 }
@@ -84,8 +94,12 @@ void RecordBuilder::store_oldest() {
   }
 }
 
+void RecordBuilder::add(const msg::FrameView& frame) {
+  if (frame_of(frame_place(frame)) != nullptr) store_oldest();
+}
+
 void RecordBuilder::add(const msg::FeatureFrame& features) {
-  Frame* const frame = frame_of(run_seq(features.seq));
+  Frame* const frame = frame_of(frame_place(features));
   if (frame == nullptr || frame->has_features) return;
   frame->has_features = true;
   frame->record.filter_stage_ms = features.stage_ms;
@@ -93,10 +107,10 @@ void RecordBuilder::add(const msg::FeatureFrame& features) {
 }
 
 void RecordBuilder::add(const msg::TrackingResult& result) {
-  const std::uint64_t seq = run_seq(result.seq);
-  Frame* const frame = frame_of(seq);
+  Frame* const frame = frame_of(frame_place(result));
   if (frame == nullptr || frame->has_result) return;
   frame->has_result = true;
+  advance(last_answered_, frame_place(result));
   frame->record.tracking = result;
   tracked_any_ = tracked_any_ || msg::is_measured(result.state);
   recent_.push_back(result);
@@ -108,7 +122,6 @@ void RecordBuilder::add(const msg::ServiceStatus& status) {
   if (services_.size() >= kMaxServices && !services_.contains(status.service)) return;
   Service& service = services_[status.service];
   if (service.pid != status.pid) {
-    if (status.service == "camera" && service.pid != 0) first_of_camera_ = end_of_seen_;
     service.pid = status.pid;
     for (auto& [name, counter] : service.counters) counter = {0, counter.total()};
     if (status.service == "camera") end_of_source_.reset();
@@ -182,14 +195,14 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   }
 }
 
-/// The camera's own count, where it has given one: what the services follow after it may have been seen already.
+/// The camera's own count, which continues when it is restarted, where it has given one: what the services follow after it may have been seen already.
 void RecordBuilder::close() {
-  const std::uint64_t counted_by_camera = counted(camera_counter(metric::kFramesIn).total());
+  const std::uint64_t counted_by_camera = counted(camera_counter(metric::kFramesIn).current);
   if (!end_of_source_) end_of_source_ = counted_by_camera > 0 ? counted_by_camera : end_of_seen_;
 }
 
 std::uint64_t RecordBuilder::frames_in() const {
-  return end_of_source_.value_or(std::max(counted(camera_counter(metric::kFramesIn).total()), end_of_seen_));
+  return end_of_source_.value_or(std::max(counted(camera_counter(metric::kFramesIn).current), end_of_seen_));
 }
 
 LiveStatus RecordBuilder::live() const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
+#include "common/msg/rgbd_frame.hpp"
 #include "common/msg/status.hpp"
 #include "common/msg/tracking.hpp"
 #include "common/run_record/run_record.hpp"
@@ -50,9 +51,15 @@ class FrameStore {
   virtual std::vector<run_record::FrameRecord> read() = 0;
 };
 
+/// Where a camera was at a frame.
+struct FramePlace {
+  std::uint64_t seq = 0;
+  std::int64_t stamp_ns = 0, published_ns = 0;
+};
+
 /// Joins the message streams of a run into its record. Messages may be missing, doubled or out of order: the first
-/// message of a frame counts, because later ones answer a frame that was sent again. Frames of a camera that was
-/// restarted follow those that it sent before. Memory is bounded: of the frames the newest kJoined are in memory, the
+/// message of a frame counts, because later ones answer a frame that was sent again. A camera that was restarted
+/// continues the numbers of its frames. Memory is bounded: of the frames the newest kJoined are in memory, the
 /// ones before in the store; services, counters and notices have a largest number. Not thread-safe.
 class RecordBuilder {
  public:
@@ -63,8 +70,7 @@ class RecordBuilder {
 
   /// `store` outlives this.
   explicit RecordBuilder(FrameStore& store) : store_(store) {}
-  /// Number of a frame within the run, from its number within the present life of the camera.
-  std::uint64_t run_seq(std::uint64_t seq) const { return first_of_camera_ + seq; }
+  void add(const msg::FrameView& frame);
   void add(const msg::FeatureFrame& features);
   void add(const msg::TrackingResult& result);
   /// Counters of a service. Those named *dropped*, *late*, *skipped*, *lost* or *refused* become RunRecord::drops; they
@@ -74,6 +80,9 @@ class RecordBuilder {
   /// Frames that the source delivered: the camera's own count, else the frames seen.
   std::uint64_t frames_in() const;
   bool tracked_any() const { return tracked_any_; }  ///< at least one frame got a pose
+  /// The newest frame of the camera, and the newest one with a result; empty before the first.
+  std::optional<FramePlace> last_seen() const { return last_seen_; }
+  std::optional<FramePlace> last_answered() const { return last_answered_; }
   /// What the camera says of itself; at its end the first piece that its source left out.
   std::string camera_message() const;
   LiveStatus live() const;
@@ -116,8 +125,8 @@ class RecordBuilder {
     run_record::FrameRecord record;
     bool has_features = false, has_result = false;
   };
-  /// The frame of this number; none where it cannot be one of this run, or is in the store already.
-  Frame* frame_of(std::uint64_t seq);
+  /// The frame of this message; none where it cannot be one of this run, or is in the store already.
+  Frame* frame_of(const FramePlace& place);
   void store_oldest();
   void set_counter(Service& service, const msg::Metric& metric);
   void notify(const std::string& text);
@@ -130,7 +139,7 @@ class RecordBuilder {
   };
 
   FrameStore& store_;
-  std::map<std::uint64_t, Frame> frames_;  ///< by run_seq(), the newest
+  std::map<std::uint64_t, Frame> frames_;  ///< by number, the newest
   std::uint64_t end_of_stored_ = 0, not_kept_ = 0;
   std::size_t notices_given_ = 0;
   bool named_forged_ = false;
@@ -140,8 +149,8 @@ class RecordBuilder {
   std::map<std::string, Repeated> kinds_;        ///< of notices
   std::map<std::string, std::string> troubles_;  ///< already reported, by service or counter
   std::deque<msg::TrackingResult> recent_;
-  std::uint64_t end_of_seen_ = 0;      ///< highest run_seq() seen + 1
-  std::uint64_t first_of_camera_ = 0;  ///< frames that the camera sent before it was restarted
+  std::uint64_t end_of_seen_ = 0;  ///< highest number seen + 1
+  std::optional<FramePlace> last_seen_, last_answered_;
   bool tracked_any_ = false;
 };
 

@@ -190,12 +190,12 @@ void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock n
 void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock now) {
   const std::string hung = " hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
   const std::string what = child.plan.name + (child.killed ? hung : " died: " + describe(exit));
-  if (child.plan.role == ServiceRole::kSource) {
+  const bool gave_up = exit.signal == 0 && !child.killed;
+  if (child.plan.role == ServiceRole::kSource && (gave_up || !child.plan.when_restarted)) {
     report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
     return decide(RunOutcome::kFailed);
   }
-  const bool gave_up = exit.signal == 0 && !child.killed && child.plan.has_served && !child.plan.has_served();
-  if (child.plan.role == ServiceRole::kLive && gave_up) {
+  if (child.plan.role == ServiceRole::kLive && gave_up && child.plan.has_served && !child.plan.has_served()) {
     report(SupervisorEvent::Kind::kGivenUp, child, what + " before its first frame: not started again", exit);
     return decide(RunOutcome::kFailed);
   }

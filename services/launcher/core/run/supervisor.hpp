@@ -15,7 +15,8 @@ namespace rtd::launcher {
 
 /// What the death of a service means for the run.
 enum class ServiceRole {
-  kSource,     ///< a recording: its end is the end of the run, and it is not played twice
+  kSource,     ///< what is stored: its end is the end of the run. One that crashes or hangs is restarted if the plan
+               ///< says how it continues; one that gives up is not, for it would do so again
   kLive,       ///< a camera: restarted, because it continues where it is now; its clean end is the end of the run
   kEssential,  ///< restarted; when it keeps dying the run fails
   kOptional,   ///< restarted; when it keeps dying the run continues without it (detector)
@@ -34,6 +35,7 @@ struct ServicePlan {
   /// waited long enough; empty: it is.
   std::function<bool()> has_served = {};
   bool outlives_run = false;  ///< not stopped with a run that ended by itself, but by end_rest()
+  bool awaited = false;       ///< the source sends nothing before this one is ready
 };
 
 struct SupervisorOptions {
