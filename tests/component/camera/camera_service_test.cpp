@@ -267,7 +267,8 @@ TEST_F(ResumedCamera, continues_in_realtime_where_the_recording_would_be_now) {
   stop_.request_stop();
   EXPECT_EQ(running.get(), service::kOk);
   EXPECT_GE(tracker_->seqs().at(20), 49U);
-  EXPECT_EQ(metric("frames_published") + metric("frames_late"), metric("frames_in") - 20) << "all are accounted for";
+  EXPECT_NEAR(metric("frames_published") + metric("frames_late"), metric("frames_in") - 20, 1)
+      << "all are accounted for, but for one that the stop may have kept from being sent";
 }
 
 TEST_F(ResumedCamera, refuses_a_place_that_it_cannot_read) {
