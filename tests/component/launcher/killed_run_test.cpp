@@ -127,12 +127,15 @@ TEST_P(EveryService, may_die_and_no_frame_is_unaccounted_for) {
   ASSERT_TRUE(frames_come(10)) << rtd_.output();
   kill(beside);
   for (const char* service : {"camera", "filter", "slam"}) kill({service});
-  EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
+  const int code = rtd_.wait();
   const nlohmann::json json = report();
   EXPECT_EQ(json["frames_given"], frames);
   EXPECT_EQ(json["frames_in"], frames);
   EXPECT_EQ(json["frames_used"].get<std::uint64_t>() + json["frames_dropped"].get<std::uint64_t>(), frames);
-  if (pace != "realtime") {
+  if (pace == "realtime") {
+    EXPECT_THAT(code, testing::AnyOf(0, 3)) << "on a busy host more than half of the frames may come too late";
+  } else {
+    EXPECT_EQ(code, 0) << rtd_.output();
     EXPECT_EQ(json["frames_dropped"], 0) << json.dump(2);
   }
   for (const char* service : {"camera", "filter", "slam", "detector", "dense", "record"})

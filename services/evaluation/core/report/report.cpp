@@ -47,6 +47,7 @@ std::string lost_places(const Run& run) {
   const auto add = [&text](const std::string& what, double count) {
     if (count > 0) text += fmt::format("{}{} {:.0f}", text.empty() ? "  (" : ", ", what, count);
   };
+  add("not_played", static_cast<double>(run.frames_not_played));
   for (const auto& [reason, count] : run.left_out) add(reason, count);
   for (const auto& [place, count] : run.drops)
     if (place != "camera.skipped" || run.left_out.empty()) add(place, count);
