@@ -8,8 +8,8 @@
 namespace rtd::camera {
 namespace {
 
-constexpr std::size_t kOffsetsToLog = 30;      // frames
-constexpr std::uint64_t kDepthToLog = 11;      // frames, of which two are looked at
+constexpr std::size_t kOffsetsToLog = 30;  // frames
+constexpr std::uint64_t kDepthToLog = 11;  // frames, of which two are looked at
 
 }  // namespace
 

@@ -89,9 +89,10 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
       pacer_(to_pacer_config(config, runtime.pace, source_->info()), service::monotonic_ns),
       results_(std::make_shared<Results>(kResultQueue, concurrency::Overflow::kDropOldest)),
       changes_(std::make_shared<concurrency::BoundedQueue<bool>>(1, concurrency::Overflow::kDropOldest)),
-      publisher_(runtime.bus, config.jpeg_quality,
-                 realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
-                 [changes = changes_] { changes->push(true); }, static_cast<std::uint64_t>(config.source_id)),
+      publisher_(
+          runtime.bus, config.jpeg_quality,
+          realtime_ ? concurrency::Overflow::kDropOldest : concurrency::Overflow::kBlock,
+          [changes = changes_] { changes->push(true); }, static_cast<std::uint64_t>(config.source_id)),
       truth_(runtime.bus.writer(bus::topics::kGroundTruth)),
       resume_(resume_point_of(config)),
       slam_(service::follow_source("slam", runtime)),
@@ -223,7 +224,8 @@ void CameraService::resume() {
   if (realtime_ && !source_->info().live) {
     const std::int64_t due_ns = resume_->stamp_ns + service::monotonic_ns() - resume_->published_ns;
     passed_over_ = source_->pass_over(due_ns);
-    if (config_.frames > 0) passed_over_ = std::min(passed_over_, static_cast<std::uint64_t>(config_.frames) - frames_in_);
+    if (config_.frames > 0)
+      passed_over_ = std::min(passed_over_, static_cast<std::uint64_t>(config_.frames) - frames_in_);
     frames_in_ += passed_over_;
   }
   SPDLOG_INFO("event=resumed frame={} late={}", frames_in_, passed_over_);

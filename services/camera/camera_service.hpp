@@ -147,7 +147,7 @@ class CameraService {
   bus::Reader<msg::TrackingResult> tracking_;
   bool one_by_one_ = true;  ///< the next frame after the result of this one, until all in flight have theirs
   std::deque<vision::RgbdImage> in_flight_;  ///< kept for sending again; empty at pace realtime
-  SourceCounters counters_, passed_;  ///< passed_: on the way behind the last frame of an earlier process
+  SourceCounters counters_, passed_;         ///< passed_: on the way behind the last frame of an earlier process
   LeftOut left_out_;
   DepthOffsets depth_offsets_;
   DepthFigures depth_figures_;

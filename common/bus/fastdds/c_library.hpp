@@ -10,10 +10,10 @@ namespace rtd::bus::fastdds {
 /// Robust locks: every lock in shared memory is robust, as Fast DDS 2.9 does not make it: a lock whose owner was killed
 /// is free at once. Otherwise each process that sends something to the killed one waits for the lock for a second, and
 /// with it its discovery, and a reader of frames may throw or wait forever. Only the state that a lock of Fast DDS
-/// guards for some microseconds may then be unfinished: an entry of a queue or a counter of waiting threads. So Fast DDS
-/// waits for such a lock for as long as its owner lives. It would give up after a second, as on a host with far too much
-/// work, by an exception that nothing catches where its threads note that they have handled a message or wait for the
-/// next frame ("Interprocess mutex timeout"): the process would end.
+/// guards for some microseconds may then be unfinished: an entry of a queue or a counter of waiting threads. So Fast
+/// DDS waits for such a lock for as long as its owner lives. It would give up after a second, as on a host with far too
+/// much work, by an exception that nothing catches where its threads note that they have handled a message or wait for
+/// the next frame ("Interprocess mutex timeout"): the process would end.
 ///
 /// Lock files: the last holder of a file removes it before unlocking it, and none locks a file without a name. Fast DDS
 /// removes it after unlocking it, by name, and with it the lock that another process, or another thread of the same

@@ -22,8 +22,8 @@ std::vector<Cause> causes_of(const run_record::RunRecord& record) {
   std::vector<Cause> causes;
   for (const auto& [name, count] : record.left_out)
     if (const auto reason = camera::skip_reason_of(name)) causes.push_back({count, name, camera::explain(*reason)});
-  causes.push_back({static_cast<double>(record.frames_not_played), "not_played",
-                    "the run ended before them: the events say why"});
+  causes.push_back(
+      {static_cast<double>(record.frames_not_played), "not_played", "the run ended before them: the events say why"});
   double late = 0;
   if (const auto found = record.drops.find("camera.late"); found != record.drops.end()) late = found->second;
   causes.push_back({late, "late",

@@ -105,8 +105,8 @@ std::vector<std::string> RunSession::continue_camera() const {
   std::vector<std::string> arguments = {"--wait-for", fmt::format("none,{}", fmt::join(awaited, ","))};
   const bool again = setup_.pace != "realtime" && !setup_.running_camera;
   if (const auto last = again ? collector_.last_answered() : collector_.last_seen()) {
-    arguments.insert(arguments.end(), {"--resume-after", fmt::format("{},{},{}", last->seq, last->stamp_ns,
-                                                                     last->published_ns)});
+    arguments.insert(arguments.end(),
+                     {"--resume-after", fmt::format("{},{},{}", last->seq, last->stamp_ns, last->published_ns)});
   }
   return arguments;
 }

@@ -94,8 +94,7 @@ void look_at_source(RunSetup& setup) {
     camera::check_live_uri(setup.source);
     require_camera(setup);
     setup.total_frames = setup.frames;
-    setup.running_camera =
-        !camera::is_device(setup.source) || !camera::parse_device_uri(setup.source).recorded;
+    setup.running_camera = !camera::is_device(setup.source) || !camera::parse_device_uri(setup.source).recorded;
     return;
   }
   const std::unique_ptr<camera::FrameSource> source = camera::make_source(setup.source);

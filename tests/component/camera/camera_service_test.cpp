@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/camera/camera_service.hpp"
 
-#include <gmock/gmock.h>
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -170,7 +170,8 @@ TEST_F(CameraServiceTest, asap_fills_its_window_and_never_exceeds_it) {
   config_.resend_after_ms = 60000;
   auto running = start(service::Pace::kAsap);
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    ASSERT_TRUE(tracker.wait_for_messages(seq == 0 ? 1 : std::min<std::size_t>(30, seq + 3))) << "the window is not filled";
+    ASSERT_TRUE(tracker.wait_for_messages(seq == 0 ? 1 : std::min<std::size_t>(30, seq + 3)))
+        << "the window is not filled";
     tracker.answer(seq);
   }
   EXPECT_EQ(running.get(), service::kOk);
@@ -231,8 +232,8 @@ class ResumedCamera : public CameraServiceTest {
     config_.frames = 0;
   }
   service::ExitCode resume(service::Pace pace, std::chrono::nanoseconds away) {
-    config_.resume_after =
-        fmt::format("19,{},{}", static_cast<std::int64_t>(tracker_->last().stamp_ns), service::monotonic_ns() - away.count());
+    config_.resume_after = fmt::format("19,{},{}", static_cast<std::int64_t>(tracker_->last().stamp_ns),
+                                       service::monotonic_ns() - away.count());
     return run(pace);
   }
   std::optional<FakeTracker> tracker_;
@@ -261,8 +262,8 @@ TEST_F(ResumedCamera, gives_every_frame_once_in_lockstep_as_the_same_source) {
 TEST_F(ResumedCamera, continues_in_realtime_where_the_recording_would_be_now) {
   config_.source = std::string(kTinyScene) + "0&fps=100";
   begin();
-  auto running =
-      std::async(std::launch::async, [this] { return resume(service::Pace::kRealtime, std::chrono::milliseconds(300)); });
+  auto running = std::async(std::launch::async,
+                            [this] { return resume(service::Pace::kRealtime, std::chrono::milliseconds(300)); });
   EXPECT_TRUE(tracker_->wait_for_messages(22));
   stop_.request_stop();
   EXPECT_EQ(running.get(), service::kOk);

@@ -158,8 +158,7 @@ TEST_P(CameraInLockstep, may_die_and_every_pose_is_as_without) {
   run.insert(run.end(), {"--detector", "off", "--frames", std::to_string(frames)});
   const auto results = [this] {
     std::vector<std::string> texts;
-    for (const char* file : {"trajectory.txt", "keyframes.txt", "map.ply"})
-      texts.push_back(text_of(out_ + "/" + file));
+    for (const char* file : {"trajectory.txt", "keyframes.txt", "map.ply"}) texts.push_back(text_of(out_ + "/" + file));
     return texts;
   };
   RtdCommand undisturbed;

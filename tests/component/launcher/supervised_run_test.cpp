@@ -228,9 +228,10 @@ TEST_F(SupervisedRunTest, ctrl_c_also_reaches_a_run_that_a_shell_put_into_the_ba
 TEST_F(SupervisedRunTest, quiet_shows_problems_only) {
   script("camera", "echo '12:00:00.000 warning camera event=frame_skipped file=x.png'; sleep 0.3");
   rtd_.run(arguments({"--quiet"}));
-  EXPECT_EQ(rtd_.output(),
-            "  warning camera event=frame_skipped file=x.png\nrtd: no frame got a pose\nrtd: only 0 of 5 frames were used; 5 "
-            "x not_played: the run ended before them: the events say why\n");
+  EXPECT_EQ(
+      rtd_.output(),
+      "  warning camera event=frame_skipped file=x.png\nrtd: no frame got a pose\nrtd: only 0 of 5 frames were used; 5 "
+      "x not_played: the run ended before them: the events say why\n");
 }
 
 TEST_F(SupervisedRunTest, a_missing_service_is_named_before_anything_starts) {

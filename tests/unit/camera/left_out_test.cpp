@@ -48,7 +48,8 @@ TEST(LeftOut, counts_what_a_list_left_out_by_the_share_that_was_played) {
 
 TEST(LeftOut, counts_from_where_an_earlier_process_stopped) {
   const SourceCounters of_the_list = skipped(SkipReason::kStampBackwards, 40);
-  const SourceCounters passed = skipped(SkipReason::kStampBackwards, 43), at_the_end = skipped(SkipReason::kStampBackwards, 45);
+  const SourceCounters passed = skipped(SkipReason::kStampBackwards, 43),
+                       at_the_end = skipped(SkipReason::kStampBackwards, 45);
   LeftOut left_out;
   left_out.open(100, 0, of_the_list);
   left_out.resume(25, passed);

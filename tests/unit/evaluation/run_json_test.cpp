@@ -177,8 +177,9 @@ TEST_F(ReportCommand, writes_both_reports_and_prints_the_table) {
   EXPECT_GT(json()["ate_rmse_m"], 0.01);
   EXPECT_EQ(json()["version"], "1.2.3");
   EXPECT_THAT(read_text(folder_.file("report.html")), testing::EndsWith("</html>\n"));
-  EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("  frames      118 given, 99 used, 94 with pose  (not_played 11, stamp"),
-                                         HasSubstr("ATE rmse"), HasSubstr("/report.html")));
+  EXPECT_THAT(out_.str(),
+              testing::AllOf(HasSubstr("  frames      118 given, 99 used, 94 with pose  (not_played 11, stamp"),
+                             HasSubstr("ATE rmse"), HasSubstr("/report.html")));
 }
 
 TEST_F(ReportCommand, judges_the_published_poses_when_slam_left_no_trajectory) {

@@ -195,7 +195,8 @@ void RecordBuilder::note_troubles(const msg::ServiceStatus& status) {
   }
 }
 
-/// The camera's own count, which continues when it is restarted, where it has given one: what the services follow after it may have been seen already.
+/// The camera's own count, which continues when it is restarted, where it has given one: what the services follow after
+/// it may have been seen already.
 void RecordBuilder::close() {
   const std::uint64_t counted_by_camera = counted(camera_counter(metric::kFramesIn).current);
   if (!end_of_source_) end_of_source_ = counted_by_camera > 0 ? counted_by_camera : end_of_seen_;
