@@ -107,7 +107,7 @@ void parse_words(CLI::App& app, int argc, const char* const* argv) {
 
 }  // namespace
 
-void parse(CLI::App& app, int argc, char** argv) {
+void parse(CLI::App& app, int argc, const char* const* argv) {
   try {
     parse_words(app, argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -117,7 +117,7 @@ void parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
-int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work) {
+int run_command(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& work) {
   prepare_standard_streams();
   try {
     parse(app, argc, argv);

@@ -22,11 +22,11 @@ namespace rtd::service {
 
 /// app.parse(), but options that do not exist are named, with the nearest one that does, before those that are missing:
 /// who writes --sorce has not forgotten --source. Throws CLI::ParseError.
-void parse(CLI::App& app, int argc, char** argv);
+void parse(CLI::App& app, int argc, const char* const* argv);
 
 /// The main function of a tool: parses the command line into what `app` is bound to, then runs `work`. Returns the exit
 /// code of `work`; 0 after --help, 2 for a wrong command line.
-int run_command(CLI::App& app, int argc, char** argv, const std::function<int()>& work);
+int run_command(CLI::App& app, int argc, const char* const* argv, const std::function<int()>& work);
 
 /// Gives the help of `app` lines of at most 100 characters. Call it before subcommands are added.
 void wrap_help(CLI::App& app);

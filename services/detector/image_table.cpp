@@ -51,7 +51,7 @@ bool asks_for_image_table(int argc, const char* const* argv) {
   return argc > 1 && std::string_view(argv[1]) == "--image";
 }
 
-int print_image_table(int argc, char** argv) {
+int print_image_table(int argc, const char* const* argv) {
   CLI::App app{"Prints what is found in image files", "rtd-detector"};
   std::vector<std::string> files;
   std::string model_name;

@@ -9,6 +9,6 @@ bool asks_for_image_table(int argc, const char* const* argv);
 
 /// Prints what the detector finds in image files as a table, without any bus. Exit code: 0, 1 when a file is not an
 /// image, 2 for wrong arguments or without weights.
-int print_image_table(int argc, char** argv);
+int print_image_table(int argc, const char* const* argv);
 
 }  // namespace rtd::detector
