@@ -41,25 +41,36 @@ class BenchmarkCommand : public ::testing::Test {
     if (!HasFailure() && !scratch_.empty()) fs::remove_all(scratch_);
   }
 
-  /// Files of walk_xyz as a Bonn sequence: without its calibration.
+  /// The first images of walk_xyz that a list names, and their part of the list: data sets hold what they name.
+  void copy_images(const std::string& list, const fs::path& folder, const std::string& images,
+                   const std::string& to) const {
+    fs::create_directories(folder / images);
+    std::ofstream copied(folder / to);
+    const auto lines = io::split_lines(io::try_read_file(clips_ / "walk_xyz" / list, io::kFrameList).value());
+    for (std::size_t i = 0; i < kFrames; ++i) {
+      const auto& fields = lines.at(i).fields;
+      const std::string file = images + "/" + fs::path(fields[1]).filename().string();
+      fs::copy_file(clips_ / "walk_xyz" / fields[1], folder / file);
+      copied << fields[0] << ' ' << file << '\n';
+    }
+  }
+  /// The first frames of walk_xyz as a Bonn sequence: without its calibration.
   void lay_out_bonn(const std::string& name) const {
-    fs::create_directories(data(name));
-    for (const char* part : {"rgb", "depth", "rgb.txt", "depth.txt", "groundtruth.txt"})
-      fs::create_symlink(clips_ / "walk_xyz" / part, data(name) / part);
+    for (const std::string part : {"rgb", "depth"}) copy_images(part + ".txt", data(name), part, part + ".txt");
+    fs::copy_file(clips_ / "walk_xyz/groundtruth.txt", data(name) / "groundtruth.txt");
   }
   /// The first frames of walk_xyz as an OpenLORIS-Scene sequence: depth in millimetres, calibration in OpenCV's YAML.
   void lay_out_openloris(const std::string& name) const {
+    copy_images("associations.txt", data(name), "color", "color.txt");
     fs::create_directories(data(name) / "aligned_depth");
-    fs::create_symlink(clips_ / "walk_xyz/rgb", data(name) / "color");
-    fs::create_symlink(clips_ / "walk_xyz/groundtruth.txt", data(name) / "groundtruth.txt");
-    std::ofstream color(data(name) / "color.txt"), depth(data(name) / "aligned_depth.txt");
+    fs::copy_file(clips_ / "walk_xyz/groundtruth.txt", data(name) / "groundtruth.txt");
+    std::ofstream depth(data(name) / "aligned_depth.txt");
     const auto lines = io::split_lines(io::try_read_file(clips_ / "walk_xyz/associations.txt", io::kFrameList).value());
     for (int i = 0; i < kFrames; ++i) {
       const auto& fields = lines.at(static_cast<std::size_t>(i)).fields;
       const std::string file = "aligned_depth/" + fs::path(fields[3]).filename().string();
       cv::Mat depth_mm = cv::imread((clips_ / "walk_xyz" / fields[3]).string(), cv::IMREAD_UNCHANGED) / 5;
       cv::imwrite((data(name) / file).string(), depth_mm);
-      color << fields[0] << " color/" << fs::path(fields[1]).filename().string() << '\n';
       depth << fields[2] << ' ' << file << '\n';
     }
     std::ofstream(data(name) / "sensors.yaml")
