@@ -4,6 +4,7 @@
 /// must hold: no crash, at most 2 s of processor time up to 1 MB and in proportion for more, at most 512 MiB. Prints
 /// what each took; exit code 1 when one took more. The time is that of the reader's process alone, so that other
 /// processes count little.
+#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -53,6 +54,7 @@ double resident_mib() {
 }
 
 Cost cost_of(const Case& one, double most_s) {
+  malloc_trim(0);  // what was freed here would be free memory there
   const double before_mib = resident_mib();
   const pid_t child = fork();
   if (child == 0) run(one, most_s);
