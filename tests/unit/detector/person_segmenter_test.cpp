@@ -204,7 +204,7 @@ std::string refusal(const std::string& path) {
 
 TEST(PersonSegmenterFileTest, refuses_files_that_are_no_network_for_masks) {
   EXPECT_THAT(refusal("/nowhere/masks.onnx"),
-              AllOf(HasSubstr("mask model '/nowhere/masks.onnx cannot be read: No such file"), HasSubstr("setup.sh"),
+              AllOf(HasSubstr("/nowhere/masks.onnx cannot be read: No such file"), HasSubstr("setup.sh"),
                     HasSubstr("detector.mask_model")));
   const std::string path = ::testing::TempDir() + "person_segmenter_test.onnx";
   const auto write = [&](const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; };
