@@ -174,7 +174,7 @@ TEST_F(EndToEndTest, a_slam_killed_during_the_run_continues_with_its_last_checkp
   rtd_.start(arguments(70, "synthetic:office?frames=180", {"--detector", "off", "--set", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
-  ASSERT_EQ(::kill(pid_of("slam"), SIGKILL), 0);
+  ASSERT_EQ(send_signal(pid_of("slam"), SIGKILL), 0);
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), HasSubstr("the map from its last checkpoint"));
   const std::string log = text_of(out_ + "/logs/slam.log");
@@ -208,7 +208,7 @@ TEST_F(EndToEndTest, a_filter_killed_during_the_run_is_restarted_and_the_run_com
   rtd_.start(arguments(62, "synthetic:office?frames=150", {"--detector", "off"}));
   ASSERT_TRUE(wait_for_frames()) << rtd_.output();
   rtd_.wait_for("never printed", std::chrono::seconds(1));
-  ASSERT_EQ(::kill(pid_of("filter"), SIGKILL), 0);
+  ASSERT_EQ(send_signal(pid_of("filter"), SIGKILL), 0);
   EXPECT_EQ(rtd_.wait(), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(),
               AllOf(HasSubstr("filter died: killed by signal 9 (SIGKILL)"), HasSubstr("filter restarted (1st time)")));
@@ -223,7 +223,7 @@ TEST_F(EndToEndTest, a_slam_that_hangs_is_killed_and_finds_its_place_again) {
   rtd_.start(arguments(81, "synthetic:office?frames=0",
                        {"--detector", "off", "--set", "launcher.hung_after_ms=2000", "slam.map.checkpoint_s=0.2"}));
   ASSERT_TRUE(wait_for_log("slam", "event=map_saved")) << rtd_.output();
-  ASSERT_EQ(::kill(pid_of("slam"), SIGSTOP), 0);
+  ASSERT_EQ(send_signal(pid_of("slam"), SIGSTOP), 0);
   ASSERT_TRUE(rtd_.wait_for("slam hung for 2 s and was killed")) << rtd_.output();
   EXPECT_TRUE(wait_for_log("slam", "event=relocalized")) << rtd_.output();
   rtd_.interrupt();

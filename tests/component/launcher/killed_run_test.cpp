@@ -76,14 +76,14 @@ class KilledRun : public testing::TestWithParam<Killed> {
     return {"run", "--source", source_of(source), "--pace", pace, "--out", out_, "--domain", std::to_string(domain_)};
   }
   std::string log_of(const std::string& service) const { return text_of(out_ + "/logs/" + service + ".log"); }
-  /// Once it has started. Never to process -1, which is all processes.
+  /// Once it has started.
   bool abort(const std::string& service) {
     pid_t pid = -1;
     for (int i = 0; i < 500 && (pid = pid_in(log_of(service))) < 1; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
       rtd_.take_output();
     }
-    return pid > 1 && ::kill(pid, SIGABRT) == 0;
+    return send_signal(pid, SIGABRT) == 0;
   }
   bool frames_come(std::uint64_t more) {
     const std::uint64_t until = frames_ + more;

@@ -40,9 +40,9 @@ class PausedRun : public testing::TestWithParam<std::string> {
   void stop_everything_for_a_while() {
     std::vector<pid_t> all = {static_cast<pid_t>(rtd_.process())};
     for (const char* service : {"camera", "filter", "slam"}) all.push_back(pid_of(service));
-    for (const pid_t pid : all) ASSERT_EQ(::kill(pid, SIGSTOP), 0) << pid;
+    for (const pid_t pid : all) ASSERT_EQ(send_signal(pid, SIGSTOP), 0) << pid;
     std::this_thread::sleep_for(pause());
-    for (const pid_t pid : all) ASSERT_EQ(::kill(pid, SIGCONT), 0) << pid;
+    for (const pid_t pid : all) ASSERT_EQ(send_signal(pid, SIGCONT), 0) << pid;
   }
   static long count(const std::string& text, const std::string& part) {
     long found = 0;

@@ -113,4 +113,9 @@ inline pid_t pid_in(const std::string& log) {
   return std::regex_search(log, found, std::regex("event=started .*pid=([0-9]+)")) ? std::stoi(found[1]) : -1;
 }
 
+/// As kill(2), but never to process -1, which is all processes of this host.
+inline int send_signal(pid_t process, int signal) {
+  return process > 1 ? ::kill(process, signal) : -1;
+}
+
 }  // namespace rtd::launcher

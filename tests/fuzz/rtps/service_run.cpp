@@ -77,7 +77,7 @@ void ServiceRun::end() {
   } while (!left.empty() && std::chrono::steady_clock::now() < give_up);
   for (const std::string& process : left) {
     std::printf("  %s did not end within 20 s of being asked and was killed\n", process.c_str());
-    ::kill(pid_of(process), SIGKILL);
+    if (const pid_t pid = pid_of(process); pid > 1) ::kill(pid, SIGKILL);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - asked;
   std::printf("  ended within %.1f s of Ctrl-C\n", took.count());
