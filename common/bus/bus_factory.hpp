@@ -66,7 +66,8 @@ struct BusOptions {
   std::string robot;             ///< its topics and frames, "": names as ever (common/bus/robot.hpp)
   std::string participant_name;  ///< shown by DDS tools, e.g. "rtd-filter"
   bool shared_memory = true;     ///< false where /dev/shm is tiny
-  std::string rings;             ///< folder of the rings of frames, "": that of this user (host/ring_folder.hpp)
+  bool uses_rings = true;        ///< of frames; false: frames are copied to and from this process
+  std::string rings;             ///< folder of the rings, "": that of this user (host/ring_folder.hpp)
   std::uint32_t shm_segment_mib = 16;
   std::uint32_t socket_buffer_kib = 4096;
   std::string ros_graph = "auto";  ///< auto counts as iron; common/service asks ROS_DISTRO before

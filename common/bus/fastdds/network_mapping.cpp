@@ -176,7 +176,7 @@ const ParticipantId& server_id() {
 
 void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
                  dds::DomainParticipantQos& qos) {
-  const std::string rings = options.shared_memory ? ring_folder(options.rings) : "";
+  const std::string rings = options.shared_memory && options.uses_rings ? ring_folder(options.rings) : "";
   qos.transport().use_builtin_transports = false;
   if (options.shared_memory) qos.transport().user_transports.push_back(as_received(shared_memory_transport(options)));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(

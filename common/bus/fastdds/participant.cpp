@@ -225,7 +225,7 @@ void Participant::create_publishers(const NetworkOptions& network) {
 }
 
 std::string Participant::rings() const {
-  if (!options_.shared_memory) return {};
+  if (!options_.shared_memory || !options_.uses_rings) return {};
   std::string folder = ring_folder(options_.rings);
   if (folder.empty() && options_.on_problem) options_.on_problem(kNoRings);
   return folder;

@@ -58,6 +58,7 @@ void choose_viewer(RunSetup& setup) {
 /// The launcher reads its own sections; the services check theirs when they start.
 void load_config(RunSetup& setup) {
   service::BusConfig bus;
+  bus.options.shm_segment_mib = bus::kSmallSegmentMib;
   service::ConfigBinder binder;
   binder.section("bus", bus);
   binder.section("launcher", setup.launcher);
@@ -65,7 +66,7 @@ void load_config(RunSetup& setup) {
   check_sections(setup.config.overrides);
   service::load_config(binder, setup.config);
   setup.bus_options = service::to_bus_options(bus, "rtd");
-  setup.bus_options.shared_memory = false;  // what others write there may end a process, and this one would end the run
+  setup.bus_options.uses_rings = false;  // what a library asserts of one ends the process, and this one would end the run
 }
 
 /// A service that is not named uses the vendor of --dds.
