@@ -12,6 +12,7 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
+#include "services/evaluation/core/trajectory/body_offset.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "tests/support/pose_error.hpp"
 
@@ -66,6 +67,10 @@ eval::PublishedPose published_pose(const slam::FrameResult& result) {
   return {result.stamp_ns, result.state, result.T_world_camera, result.covariance, result.map_id};
 }
 
+eval::Trajectory camera_truth(const OfflineReport& report) {
+  return eval::camera_truth(report.groundtruth, eval::find_body_offset(report.trajectory, report.groundtruth, 0));
+}
+
 void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& report) {
   const auto tracked = static_cast<double>(report.trajectory.size());
   const auto given = static_cast<double>(report.frames + report.frames_left_out);
@@ -77,7 +82,7 @@ void evaluate(const std::vector<slam::FrameResult>& published, OfflineReport& re
   const MeanNees nees = mean_nees(published, report.groundtruth);
   report.nees = nees.measured;
   report.predicted_nees = nees.predicted;
-  const eval::RpeResult rpe = eval::rpe(report.trajectory, report.groundtruth);
+  const eval::RpeResult rpe = eval::rpe(report.trajectory, camera_truth(report));
   report.rpe_trans_rmse_m = rpe.translation_m.rmse;
   report.rpe_rot_rmse_deg = rpe.rotation_rad.rmse * 180 / std::numbers::pi;
 }
@@ -93,9 +98,10 @@ void judge_results(const std::vector<slam::FrameResult>& results, bool has_prior
     if ((predicted || msg::is_measured(result.state)) && result.map_id == 0) judged.push_back(result);
   }
   evaluate(judged, report);
-  report.integrity = eval::judge_integrity(published, report.groundtruth);
+  const eval::Trajectory truth = camera_truth(report);
+  report.integrity = eval::judge_integrity(published, truth);
   report.doubtful_frames = report.integrity.in_state[static_cast<std::size_t>(msg::TrackingState::kDoubtful)];
-  report.drift = eval::measure_drift(eval::measured_poses(published), report.groundtruth);
+  report.drift = eval::measure_drift(eval::measured_poses(published), truth);
 }
 
 ClosedLoop judge(const slam::LoopClosure& closure, const eval::Trajectory& groundtruth) {

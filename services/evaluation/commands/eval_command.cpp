@@ -202,9 +202,9 @@ std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
 }
 
 /// Where the states of the poses are known.
-std::optional<Integrity> integrity_of(const Inputs& inputs) {
+std::optional<Integrity> integrity_of(const Inputs& inputs, const std::optional<BodyOffset>& offset) {
   if (inputs.published.empty()) return std::nullopt;
-  return judge_integrity(inputs.published, inputs.groundtruth);
+  return judge_integrity(inputs.published, camera_truth(inputs.groundtruth, offset));
 }
 
 std::string text_of(const Evaluation& evaluation, const std::optional<Integrity>& integrity,
@@ -270,9 +270,10 @@ int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
     }
     leave_out_ate_of_two(evaluation, err);
     if (!options.plot.empty()) write_plot(evaluation, inputs, options);
-    out << text_of(evaluation, integrity_of(inputs), options);
+    out << text_of(evaluation, integrity_of(inputs, evaluation.offset), options);
     if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))
       err << "rtd eval: note: " << *unit << '\n';
+    if (evaluation.offset) err << "rtd eval: note: " << explain(*evaluation.offset) << '\n';
     for (const std::string& note : inputs.notes) err << "rtd eval: note: " << note << '\n';
     for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
     return inputs.damages.empty() ? service::kOk : service::kPartialLoss;

@@ -111,6 +111,7 @@ std::optional<Evaluation> evaluate_or_note(const std::string& what, const Trajec
                                 evaluation.ate.error_m.count, kFewestAtePoses - 1));
     return std::nullopt;
   }
+  if (evaluation.offset) notes.push_back(what + ": " + explain(*evaluation.offset));
   if (!evaluation.ate.alignment.unique) {
     notes.push_back(what + ": poses lie on one line or point, so the alignment is one of many and the ATE optimistic");
   }
@@ -136,7 +137,7 @@ std::optional<Integrity> integrity_of(const Run& run, const RunSummary& summary)
   if (run.frames.empty() || !summary.online_trajectory) return std::nullopt;
   std::vector<PublishedPose> published;
   for (const run_record::FrameRecord& frame : run.frames) published.push_back(published_pose(frame.tracking));
-  return judge_integrity(published, summary.groundtruth);
+  return judge_integrity(published, camera_truth(summary.groundtruth, summary.online_trajectory->offset));
 }
 
 }  // namespace

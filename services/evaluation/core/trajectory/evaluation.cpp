@@ -34,6 +34,13 @@ Json alignment_json(const Alignment& alignment) {
           {"unique", alignment.unique}};
 }
 
+Json offset_json(const std::optional<BodyOffset>& offset) {
+  if (!offset) return nullptr;
+  const Eigen::Quaterniond q(offset->T_body_camera.linear());
+  const Eigen::Vector3d t = offset->T_body_camera.translation();
+  return {{"translation_m", {t.x(), t.y(), t.z()}}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
 Json rpe_json(const RpeResult& rpe) {
   return {{"translation_m", to_json(rpe.translation_m)}, {"rotation_deg", to_json(rpe.rotation_rad, kRadToDeg)}};
 }
@@ -105,14 +112,14 @@ Evaluation evaluate(const Trajectory& estimate, const Trajectory& groundtruth, c
   evaluation.estimate_poses = estimate.size();
   evaluation.groundtruth_poses = groundtruth.size();
   evaluation.ate = ate(estimate, groundtruth, options);
-  const auto rpe_per = [&](RpeUnit unit) {
-    return rpe(estimate, groundtruth, {1.0, unit, options.association.offset_s, evaluation.ate.alignment.scale});
-  };
+  const double offset_s = options.association.offset_s, scale = evaluation.ate.alignment.scale;
+  evaluation.offset = find_body_offset(estimate, groundtruth, offset_s, scale);
+  const Trajectory truth = camera_truth(groundtruth, evaluation.offset);
+  const auto rpe_per = [&](RpeUnit unit) { return rpe(estimate, truth, {1.0, unit, offset_s, scale}); };
   evaluation.rpe_per_second = rpe_per(RpeUnit::kSeconds);
   evaluation.rpe_per_frame = rpe_per(RpeUnit::kFrames);
   evaluation.rpe_per_metre = rpe_per(RpeUnit::kMetres);
-  evaluation.drift = measure_drift(estimate, groundtruth,
-                                   {.offset_s = options.association.offset_s, .scale = evaluation.ate.alignment.scale});
+  evaluation.drift = measure_drift(estimate, truth, {.offset_s = offset_s, .scale = scale});
   evaluation.coverage = measure_coverage(estimate, groundtruth, options, frames_ns);
   return evaluation;
 }
@@ -147,6 +154,7 @@ Json to_json(const Evaluation& e) {
           {"groundtruth_poses", e.groundtruth_poses},
           {"ate_m", to_json(e.ate.error_m)},
           {"alignment", alignment_json(e.ate.alignment)},
+          {"body_offset", offset_json(e.offset)},
           {"rpe",
            {{"per_second", rpe_json(e.rpe_per_second)},
             {"per_frame", rpe_json(e.rpe_per_frame)},
