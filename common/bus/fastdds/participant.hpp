@@ -65,8 +65,8 @@ class Participant {
   void silence() { participant_->set_listener(nullptr); }
   /// Where its endpoints have the rings of frames (place_ring()); empty: nowhere.
   std::string rings() const;
-  /// The partitions of such an endpoint as Fast DDS's property of that name has them; empty: as all others of the topic.
-  /// In a run readers of frames ask for its rings alone, and what others write costs them nothing.
+  /// The partitions of such an endpoint as Fast DDS's property of that name has them; empty: as all others of the
+  /// topic. In a run readers of frames ask for its rings alone, and what others write costs them nothing.
   std::string ring_partitions(const std::string& folder, bool writes) const;
   /// Held while Fast DDS creates an endpoint, which reads the size of its type, or deletes a reader: its list of
   /// readers with a liveliness has no lock of its own where it shrinks.

@@ -23,8 +23,8 @@ dds::DataWriterQos raw_writer_qos(const RawWriterOptions& options);
 std::uint64_t ring_id(const std::string& folder);
 
 /// An endpoint with a ring has it in `folder` (host/ring_folder.hpp), and shares it with those that have theirs there
-/// too, on this host, and with the same version of Fast DDS: others lay the memory out differently, and the process that
-/// opens it aborts. Without a folder, samples go through the transports, as to all others.
+/// too, on this host, and with the same version of Fast DDS: others lay the memory out differently, and the process
+/// that opens it aborts. Without a folder, samples go through the transports, as to all others.
 void place_ring(dds::DataSharingQosPolicy& policy, const std::string& folder);
 
 /// With the type's hash in the user data, for ROS 2 (common/ros2/type_description.hpp).

@@ -28,10 +28,10 @@ struct CleanOptions {
   bool dry_run = false;             ///< only report what would be removed
 };
 
-/// Removes what killed DDS processes left in shared memory and in its folders of rings (ring_folder.hpp): files with the
-/// names of our vendors that no living process maps, holds open or has locked, and empty folders of rings. Left are
-/// files of a process that may not be looked at, and everything when this process shares /dev/shm with processes that it
-/// cannot see (a container with the host's IPC but its own PIDs). Processes that clean at the same time take turns.
+/// Removes what killed DDS processes left in shared memory and in its folders of rings (ring_folder.hpp): files with
+/// the names of our vendors that no living process maps, holds open or has locked, and empty folders of rings. Left are
+/// files of a process that may not be looked at, and everything when this process shares /dev/shm with processes that
+/// it cannot see (a container with the host's IPC but its own PIDs). Processes that clean at the same time take turns.
 /// Never throws; 0.1 ms without such files, else about 5 ms for 100 processes.
 CleanReport remove_shm_leftovers(const CleanOptions& options = {});
 

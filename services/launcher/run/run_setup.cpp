@@ -66,7 +66,7 @@ void load_config(RunSetup& setup) {
   check_sections(setup.config.overrides);
   service::load_config(binder, setup.config);
   setup.bus_options = service::to_bus_options(bus, "rtd");
-  setup.bus_options.uses_rings = false;  // what a library asserts of one ends the process, and this one would end the run
+  setup.bus_options.uses_rings = false;  // what a library asserts of one would end this process, and with it the run
 }
 
 /// A service that is not named uses the vendor of --dds.

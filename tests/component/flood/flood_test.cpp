@@ -17,13 +17,13 @@ using testing::Not;
 
 struct Outcome {
   double poses = 0, frames = 0, ate_m = 0;
-  std::string written;       ///< by the attacker
+  std::string written;      ///< by the attacker
   bool maps_rings = false;  ///< the launcher
 };
 
 /// A running pipeline in real time, and a peer without keys that writes to every topic and command a thousand times a
-/// second, or without a pause by writers that come and go. RTD_FLOOD_S makes the attack longer than six seconds; 60 and more are judged by the asked figures, six leave
-/// room for a busy computer.
+/// second, or without a pause by writers that come and go. RTD_FLOOD_S makes the attack longer than
+/// six seconds; 60 and more are judged by the asked figures, six leave room for a busy computer.
 class FloodTest : public testing::TestWithParam<std::string> {
  protected:
   static int seconds() {
