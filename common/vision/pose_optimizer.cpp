@@ -87,9 +87,21 @@ Information gather(const RgbdProjection& camera, const std::vector<PoseObservati
   return sum;
 }
 
+/// Whether the camera is about where it is expected. Elsewhere it has been carried there, and nothing is known.
+bool expected(const PositionPrior& position, const Eigen::Isometry3d& T_camera_world) {
+  constexpr double kMostSigmas = 4;
+  return (T_camera_world * position.p_world).norm() <= kMostSigmas * position.sigma_m;
+}
+
+void add_position(const PositionPrior& position, const Eigen::Isometry3d& T_camera_world, Information& sum) {
+  Matrix36d J;
+  J << Eigen::Matrix3d::Identity(), -geometry::skew(T_camera_world.linear() * position.p_world);
+  sum.rotation += J.transpose() * J / (position.sigma_m * position.sigma_m);
+}
+
 /// Adds what a known rotation says, whose covariance is right.
 void add_rotation(const RotationPrior& rotation, Information& sum) {
-  sum.rotation.bottomRightCorner<3, 3>() = rotation.covariance.inverse();
+  sum.rotation.bottomRightCorner<3, 3>() += rotation.covariance.inverse();
 }
 
 /// Variance of whitened residuals, as found. Few of them are uncertain: the assumed 1 counts as this many more.
@@ -143,8 +155,8 @@ Matrix36d pose_jacobian(const RgbdProjection& camera, const Eigen::Vector3d& p_r
 }
 
 PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vector<PoseObservation>& observations,
-                                  const Eigen::Isometry3d& T_world_camera_initial,
-                                  const PoseOptimizerOptions& options) {
+                                  const Eigen::Isometry3d& T_world_camera_initial, const PoseOptimizerOptions& given) {
+  PoseOptimizerOptions options = given;
   PoseOptimizerResult result;
   result.T_world_camera = T_world_camera_initial;
   result.inlier.assign(observations.size(), 1);
@@ -166,6 +178,7 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
     T_camera_world.linear() = geometry::so3_exp(x.tail<3>()) * T_camera_world.linear();
     T_camera_world.translation() += x.head<3>();
     classify(camera, observations, T_camera_world, options, result);
+    if (options.position && !expected(*options.position, T_camera_world)) options.position.reset();
   }
 
   T_camera_world = geometry::normalized(T_camera_world);
@@ -174,8 +187,9 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
   const bool seen = world_covariance(information, T_camera_world, result.image_covariance);
   result.covariance = result.image_covariance;
   bool determined = seen;
-  if (options.rotation) {
-    add_rotation(*options.rotation, information);
+  if (options.rotation || options.position) {
+    if (options.rotation) add_rotation(*options.rotation, information);
+    if (options.position) add_position(*options.position, T_camera_world, information);
     determined = world_covariance(information, T_camera_world, result.covariance);
     if (!seen) result.image_covariance = result.covariance;
   }

@@ -31,6 +31,12 @@ struct RotationPrior {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of a small turn in the camera's axes, rad^2; regular
 };
 
+/// Where the camera is, as its motion so far lets expect.
+struct PositionPrior {
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
+  double sigma_m = 1;  ///< along each axis
+};
+
 struct PoseOptimizerOptions {
   RobustKernel kernel = RobustKernel::kHuber;
   int rounds = 4;           ///< optimise, then sort inliers from outliers
@@ -40,6 +46,7 @@ struct PoseOptimizerOptions {
   double max_chi2_rgbd = 7.815;           ///< 3 degrees of freedom: observations with depth
   int min_inliers = 6;                    ///< fewer end the optimisation as failed
   std::optional<RotationPrior> rotation;  ///< one more residual: docs/theory/tracking.md Eq. (19)
+  std::optional<PositionPrior> position;  ///< another one, Eq. (20); not where the image shows more than 4 sigma
 };
 
 struct PoseOptimizerResult {

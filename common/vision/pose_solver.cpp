@@ -109,6 +109,7 @@ double PoseCost::for_each(const Vector6d& x, const Visit& visit) const {
     squared += scaling.residual * scaling.residual * chi2;
     visit(*observation, p_rotated, p_camera, r, scaling);
   }
+  if (options_.position) squared += ((R * options_.position->p_world + t) / options_.position->sigma_m).squaredNorm();
   if (options_.rotation)
     squared += (root_information(*options_.rotation) * error_rad(R, *options_.rotation)).squaredNorm();
   return squared;
@@ -128,6 +129,16 @@ NormalEquations PoseCost::linearize(const Vector6d& x) const {
   const Eigen::Matrix3d left_jacobian = geometry::so3_left_jacobian(x.tail<3>());
   NormalEquations equations = sums.equations(left_jacobian);
   equations.squared = squared;
+  if (options_.position) {  // seen from the right pose, it is at the origin of the camera
+    const Eigen::Vector3d rotated =
+        geometry::so3_exp(x.tail<3>()) * T_camera_world_.linear() * options_.position->p_world;
+    Eigen::Matrix<double, 3, 6> J;
+    J << Eigen::Matrix3d::Identity(), -geometry::skew(rotated) * left_jacobian;
+    J /= options_.position->sigma_m;
+    const Eigen::Vector3d r = (rotated + T_camera_world_.translation() + x.head<3>()) / options_.position->sigma_m;
+    equations.hessian += J.transpose() * J;
+    equations.descent -= J.transpose() * r;
+  }
   if (options_.rotation) {
     const Eigen::Matrix3d root = root_information(*options_.rotation);
     const Eigen::Matrix3d R = geometry::so3_exp(x.tail<3>()) * T_camera_world_.linear();

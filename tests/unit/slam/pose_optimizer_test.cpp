@@ -50,6 +50,30 @@ Eigen::Isometry3d disturbed(const Eigen::Isometry3d& T_world_camera) {
   return T_world_camera * make_pose((geometry::Vector6d() << 0.05, -0.04, 0.06, 0.03, -0.04, 0.05).finished());
 }
 
+TEST(PoseOptimizer, a_known_position_decides_what_points_on_one_side_leave_open) {
+  Scene scene = make_scene(400, 1.0);
+  std::erase_if(scene.observations,
+                [](const PoseObservation& o) { return o.measured.pixel.x() > 120 || o.measured.pixel.y() > 140; });
+  for (PoseObservation& observation : scene.observations) observation.measured.depth_m = 0;
+  PoseOptimizerOptions options;
+  const double alone_m =
+      (optimize_pose(kCamera, scene.observations, scene.T_world_camera).T_world_camera.translation() -
+       scene.T_world_camera.translation())
+          .norm();
+  options.position = PositionPrior{scene.T_world_camera.translation(), 0.003};
+  const auto held = optimize_pose(kCamera, scene.observations, scene.T_world_camera, options);
+  ASSERT_TRUE(held.success);
+  const double held_m = (held.T_world_camera.translation() - scene.T_world_camera.translation()).norm();
+  EXPECT_GT(alone_m, 0.005);
+  EXPECT_LT(held_m, 0.5 * alone_m);
+  options.position->p_world += Eigen::Vector3d(0.5, 0, 0);
+  options.position->sigma_m = 0.02;
+  const Scene whole = make_scene(400, 1.0);
+  const auto seen = optimize_pose(kCamera, whole.observations, disturbed(whole.T_world_camera), options);
+  EXPECT_LT((seen.T_world_camera.translation() - whole.T_world_camera.translation()).norm(), 0.003)
+      << "an image full of points outweighs a wrong expectation";
+}
+
 TEST(PoseOptimizer, recovers_exact_pose_from_perfect_points) {
   const Scene scene = make_scene(100, 0.0);
   const auto result = optimize_pose(kCamera, scene.observations, disturbed(scene.T_world_camera));
@@ -64,7 +88,8 @@ Scene with_gross_outliers(int outliers, std::uint64_t seed) {
   Scene scene = make_scene(200, 0.3, seed);
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> shift(15, 80);
-  for (int i = 0; i < outliers; ++i) scene.observations[static_cast<std::size_t>(i)].measured.pixel.x() += shift(random);
+  for (int i = 0; i < outliers; ++i)
+    scene.observations[static_cast<std::size_t>(i)].measured.pixel.x() += shift(random);
   return scene;
 }
 
