@@ -37,6 +37,7 @@ struct ServiceConfig {
     binder.section("techniques", core.techniques);
     binder.section("sensor", core.sensor);
     binder.section("tracker", core.tracker);
+    binder.section("witness", core.witness);
     binder.section("prediction", core.prediction);
     binder.section("prior", core.prior);
     binder.section("imu", core.imu);

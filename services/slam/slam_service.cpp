@@ -171,7 +171,7 @@ void SlamService::answer(const msg::FeatureFrame& frame) {
   publisher_.publish(output, last_result_);
   trace(started_ns);
   trust_ = trust_monitor_.add(last_result_, output.result.agreement);
-  last_problem_ = output.problem;
+  last_problem_ = output.settling ? std::string{} : output.problem;  // every start waits: no trouble
   count(output);
   log(output, previous);
 }

@@ -11,6 +11,7 @@
 
 #include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/support/walk_world.hpp"
 
 namespace rtd::test_support {
@@ -25,7 +26,7 @@ struct MapScaleOptions {
   std::size_t full_mapping = std::numeric_limits<std::size_t>::max();
   std::size_t compared_frames = 300;  ///< tracked with the small and the large map in turn
   WalkWorld::Options world;
-  slam::SlamConfig slam;
+  slam::SlamConfig slam = plain();
   slam::Clock now_ns;                            ///< CPU time of this thread: what else the host does counts little
   std::function<std::int64_t()> allocations;     ///< counts up, of this process; may be empty
   std::function<void(std::size_t)> on_keyframe;  ///< insertions so far; may be empty

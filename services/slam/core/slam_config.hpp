@@ -66,6 +66,9 @@ struct TrackerConfig {
   int min_inliers = 30;
   double recently_lost_s = 1.0;
   int recovery_keyframes = 3;
+  double inertia_m_s2 = 10;
+  double max_speed_m_s = 3;
+  double max_acceleration_m_s2 = 30;
 
   void bind(auto& binder) {
     binder.field("min_initial_points", min_initial_points, {10, 2048},
@@ -79,7 +82,40 @@ struct TrackerConfig {
     binder.field("min_inliers", min_inliers, {6, 500}, "landmarks that a pose needs to count as tracked");
     binder.field("recently_lost_s", recently_lost_s, {0.0, 1000.0},
                  "without a pose for longer, 'recently lost' becomes 'lost'");
+    binder.field("inertia_m_s2", inertia_m_s2, {0.0, 1000.0},
+                 "standard deviation of the hand's acceleration, as poses weigh it against landmarks; 0: they do not");
+    binder.field("max_speed_m_s", max_speed_m_s, {0.1, 1000.0},
+                 "a pose that is reached only faster is doubtful, if neither IMU nor wheels agree, and so is one ...");
+    binder.field("max_acceleration_m_s2", max_acceleration_m_s2, {0.1, 100000.0}, "... that needs more than this");
     binder.field("recovery_keyframes", recovery_keyframes, {0, 100}, "keyframes tried in each frame while lost");
+  }
+};
+
+/// Which landmarks carry a pose: docs/theory/tracking.md, "Witnesses".
+struct WitnessConfig {
+  bool used = true;
+  double after_s = 0.5;
+  double settle_s = 2;
+  double probation_share = 0.5;
+  int enough = 30;
+  double found_share = 0.4;
+  double decisive_share = 0.2;
+  double wide_share = 0.35;
+
+  void bind(auto& binder) {
+    binder.field("used", used, "landmarks that have been seen to rest carry the pose; off: all alike");
+    binder.field("after_s", after_s, {0.0, 60.0}, "a landmark that was seen to rest for so long is a witness");
+    binder.field("settle_s", settle_s, {0.0, 60.0},
+                 "poses in a new map are doubtful until witnesses carry one, but for no longer than this");
+    binder.field("probation_share", probation_share, {0.0, 100.0},
+                 "all other landmarks together weigh at most this share of what the witnesses in view weigh");
+    binder.field("enough", enough, {1, 2048}, "so many witnesses carry a pose, wherever they are in the image, or ...");
+    binder.field("found_share", found_share, {0.0, 1.0}, "... this share of the tiles where witnesses should be seen");
+    binder.field(
+        "decisive_share", decisive_share, {0.0, 1.0},
+        "where witnesses are expected in this share of the tiles with features, a pose without them is doubtful");
+    binder.field("wide_share", wide_share, {0.0, 1.0},
+                 "with fewer, landmarks that agree in this share of the tiles carry the pose: a new view");
   }
 };
 
@@ -331,6 +367,7 @@ struct SlamConfig {
   Techniques techniques;
   SensorConfig sensor;
   TrackerConfig tracker;
+  WitnessConfig witness;
   PredictionConfig prediction;
   PriorConfig prior;
   ImuConfig imu;

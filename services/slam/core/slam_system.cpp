@@ -89,6 +89,7 @@ SlamOutput SlamSystem::process(const msg::FeatureFrame& message) {
   evidence_.raster_scale = msg::feature_scale(message.width, message.height);
   had_pose_ = msg::has_pose(outcome.state);
   if (outcome.map != nullptr) map_ = outcome.map->map;
+  output.settling = outcome.settling;
   collect_events(output);
   output.T_map_odom = odometry_.T_map_odom();
   output.result = result_of(message, input, outcome);
@@ -183,6 +184,7 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) 
   TrackOutcome outcome = tracker_->initialize(input.frame, mapping_.begin_map(std::move(first)));
   odometry_.correct(before, tracker_->T_world_camera());  // another world, the same odometry
   leave_odometry();
+  output.problem = problem_of(outcome, config_.tracker.min_inliers);
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);

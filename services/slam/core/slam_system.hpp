@@ -57,6 +57,7 @@ struct SlamOutput {
   std::vector<LoopClosure> loops;                                ///< closed since the last frame
   std::optional<UpFound> up;                                     ///< a map began with it; only if it was looked for
   std::uint32_t invalid_features = 0;  ///< left out because a value is not finite or out of range
+  bool settling = false;               ///< TrackOutcome::settling
   std::string problem;                 ///< one line for people when the frame is not tracked; else empty
 };
 

@@ -7,6 +7,7 @@
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/pose_error.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -27,7 +28,7 @@ std::array<double, kLooks.size()> mean_nees(double noise_px, double depth_noise_
     options.seed = static_cast<std::uint64_t>(world) + 1;
     options.points = 800;
     const FeatureWorld features(options);
-    SlamConfig config;
+    SlamConfig config = test_support::settled();
     config.sensor.shared_error = 1;       // the noise of these features is independent
     config.sensor.calibration_error = 0;  // and the camera known exactly
     SlamSystem slam(config, MappingMode::kSynchronous, [] { return std::int64_t{0}; });

@@ -17,6 +17,7 @@
 #include "services/slam/slam_service.hpp"
 #include "tests/support/frames_table.hpp"
 #include "tests/support/service_fixture.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/support/two_places.hpp"
 
 namespace rtd::slam {
@@ -49,6 +50,7 @@ class FramesOfMaps : public test_support::ServiceFixture<SlamService> {
     receive(bus::topics::kPath, paths_);
     receive(bus::topics::kMapPoints, clouds_);
     receive(bus::topics::kMapJumps, jumps_);
+    config_.core = test_support::settled();
     config_.map_period_ms = 10;
     config_.path_period_ms = 1;
     config_.map.folder = folder_.string();

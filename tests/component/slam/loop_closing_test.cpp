@@ -15,6 +15,7 @@
 #include "services/slam/core/loop/loop_closer.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/support/walk_world.hpp"
 
 namespace rtd::slam {
@@ -208,7 +209,7 @@ TEST(GlobalAdjuster, in_the_background_it_can_be_cancelled_and_reports_when_it_i
 }
 
 SlamConfig patient() {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.loop.min_inliers = 40;
   return config;
 }

@@ -6,6 +6,7 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/support/two_places.hpp"
 
 namespace rtd::slam {
@@ -31,7 +32,7 @@ class TwoPlaces : public ::testing::Test {
 
  private:
   test_support::TwoPlaces places_;
-  SlamSystem slam_{{}, MappingMode::kSynchronous, [] { return std::int64_t{0}; }};
+  SlamSystem slam_{test_support::settled(), MappingMode::kSynchronous, [] { return std::int64_t{0}; }};
   Eigen::Isometry3d T_world_camera_ = Eigen::Isometry3d::Identity();
   std::uint64_t next_ = 0;
 };

@@ -16,6 +16,7 @@
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/support/walk_world.hpp"
 
 namespace rtd::slam {
@@ -106,7 +107,7 @@ class MapPublisherTest : public testing::Test {
 };
 
 SlamSystem make_slam() {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.sensor.calibration_error = 0;
   return {config, MappingMode::kSynchronous, test_support::frozen_clock};
 }
@@ -177,7 +178,7 @@ TEST(MapUpdates, a_closed_loop_costs_poses_only) {
   WalkWorld::Options options;
   options.points_per_m3 = 22;
   WalkWorld world(options);
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.loop.confirmations = 3;
   SlamSystem slam(config, MappingMode::kSynchronous, test_support::frozen_clock);
   MapChanges changes;

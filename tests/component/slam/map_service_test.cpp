@@ -18,6 +18,7 @@
 #include "services/slam/slam_service.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -32,6 +33,7 @@ class MapServiceTest : public test_support::ServiceFixture<SlamService> {
  protected:
   MapServiceTest() : features_(bus_->writer(bus::topics::kFeatures)), file_((folder_ / "room.rtdmap").string()) {
     receive(bus::topics::kTracking, results_);
+    config_.core = test_support::settled();
     std::filesystem::create_directories(folder_);
   }
 
@@ -47,7 +49,7 @@ class MapServiceTest : public test_support::ServiceFixture<SlamService> {
   }
   /// A map of 60 frames in file_, made by a core alone.
   void make_map() const {
-    SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, [] { return 0; });
+    SlamSystem slam(test_support::settled(), MappingMode::kSynchronous, [] { return 0; });
     for (std::uint64_t seq = 0; seq < 60; ++seq) slam.process(*world_.view(seq, FeatureWorld::T_world_camera(seq)));
     slam.read_map([&](const Map& map) { save_map_file(file_, take_snapshot(map)); });
   }
@@ -329,7 +331,7 @@ TEST_F(MapServiceTest, keeps_tracking_and_reports_when_the_map_cannot_be_saved) 
 TEST(MapKeeper, saves_to_any_file_while_the_system_runs) {
   const auto folder = std::filesystem::temp_directory_path() / "rtd_map_keeper_test";
   std::filesystem::create_directories(folder);
-  SlamSystem slam(SlamConfig{}, MappingMode::kSynchronous, [] { return 0; });
+  SlamSystem slam(test_support::settled(), MappingMode::kSynchronous, [] { return 0; });
   MapKeeper keeper(MapFileConfig{}, slam);
   EXPECT_THAT([&] { keeper.save_to(folder / "empty.rtdmap"); },
               ThrowsMessage<std::runtime_error>(HasSubstr("nothing was mapped")));

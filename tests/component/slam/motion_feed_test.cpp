@@ -19,6 +19,7 @@
 #include "services/slam/slam_service.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -36,6 +37,7 @@ class MotionFeedTest : public test_support::ServiceFixture<SlamService> {
         raw_(bus::connect_raw(bus_options_)),
         imu_(FeatureWorld::T_world_camera_at, SyntheticImu::Options(), 1) {
     receive(bus::topics::kTracking, results_);
+    config_.core = test_support::settled();
     config_.motion.imu = "/camera/imu";
     bus::RawWriterOptions options;
     options.qos.reliable = false;

@@ -12,6 +12,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -25,7 +26,7 @@ constexpr int kDark = 60;  ///< frames after which tracking is lost, not only re
 class Relocalization : public ::testing::Test {
  protected:
   explicit Relocalization(MappingMode mode = MappingMode::kSynchronous) : mode_(mode) {}
-  void SetUp() override { restart({}); }
+  void SetUp() override { restart(test_support::settled()); }
   void restart(const SlamConfig& config) {
     slam_ = std::make_unique<SlamSystem>(config, mode_, [] { return std::int64_t{0}; });
   }
@@ -120,7 +121,7 @@ TEST_F(Relocalization, needs_no_depth_at_a_known_place) {
 }
 
 TEST_F(Relocalization, gives_out_no_pose_before_the_next_frames_agree) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.place.confirmations = 3;
   restart(config);
   map_frames(60);
@@ -136,7 +137,7 @@ TEST_F(Relocalization, gives_out_no_pose_before_the_next_frames_agree) {
 }
 
 TEST_F(Relocalization, recognises_nothing_elsewhere) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.place.new_map_after_s = 0;
   restart(config);
   map_frames(60);
@@ -202,7 +203,7 @@ TEST_F(Relocalization, survives_impossible_features_while_lost) {
 
 TEST_F(Relocalization, same_input_same_bits) {
   const auto run = [&] {
-    restart({});
+    restart(test_support::settled());
     next_ = 0;
     map_frames(50);
     cover(20);
@@ -215,7 +216,7 @@ TEST_F(Relocalization, same_input_same_bits) {
 }
 
 TEST_F(Relocalization, without_place_recognition_the_window_is_searched_as_before) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.techniques.place_recognition = false;
   restart(config);
   map_frames(60);

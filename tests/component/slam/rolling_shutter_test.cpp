@@ -8,6 +8,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -95,39 +96,39 @@ TEST(RollingShutter, a_feature_without_depth_follows_the_rotation_alone) {
 }
 
 TEST(RollingShutter, the_readout_time_is_found_and_halves_the_error) {
-  SlamConfig off;
+  SlamConfig off = test_support::settled();
   off.techniques.rolling_shutter = false;
-  const RunResult without = run(kReadout_s, off), with = run(kReadout_s, {});
+  const RunResult without = run(kReadout_s, off), with = run(kReadout_s, test_support::settled());
   EXPECT_NEAR(with.readout_s, kReadout_s, 0.25 * kReadout_s);
   EXPECT_LT(with.rotation_rmse_rad, 0.6 * without.rotation_rmse_rad);
   EXPECT_LT(with.position_rmse_m, 0.6 * without.position_rmse_m);
 }
 
 TEST(RollingShutter, a_known_readout_time_is_used_from_the_start) {
-  SlamConfig known;
+  SlamConfig known = test_support::settled();
   known.sensor.readout_s = kReadout_s;
   const RunResult result = run(kReadout_s, known);
   EXPECT_EQ(result.readout_s, kReadout_s);
-  EXPECT_LE(result.rotation_rmse_rad, run(kReadout_s, {}).rotation_rmse_rad * 1.1);
+  EXPECT_LE(result.rotation_rmse_rad, run(kReadout_s, test_support::settled()).rotation_rmse_rad * 1.1);
 }
 
 TEST(RollingShutter, what_the_frames_say_counts_as_what_is_configured) {
-  SlamConfig known;
+  SlamConfig known = test_support::settled();
   known.sensor.readout_s = kReadout_s;
-  const RunResult configured = run(kReadout_s, known), said = run(kReadout_s, {}, kReadout_s);
+  const RunResult configured = run(kReadout_s, known), said = run(kReadout_s, test_support::settled(), kReadout_s);
   EXPECT_EQ(said.readout_s, kReadout_s);
   EXPECT_EQ(said.rotation_rmse_rad, configured.rotation_rmse_rad);
   EXPECT_EQ(said.position_rmse_m, configured.position_rmse_m);
 }
 
 TEST(RollingShutter, what_is_configured_wins_over_what_the_frames_say) {
-  SlamConfig known;
+  SlamConfig known = test_support::settled();
   known.sensor.readout_s = kReadout_s;
   EXPECT_EQ(run(kReadout_s, known, -kReadout_s).readout_s, kReadout_s);
 }
 
 TEST(RollingShutter, a_global_shutter_is_left_alone) {
-  const RunResult result = run(0, {});
+  const RunResult result = run(0, test_support::settled());
   EXPECT_EQ(result.readout_s, 0);
   EXPECT_LT(result.position_rmse_m, 0.005);
 }

@@ -11,6 +11,7 @@
 #include "common/service/config.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -32,6 +33,7 @@ class SlamServiceTest : public test_support::ServiceFixture<SlamService> {
     receive(bus::topics::kPath, paths_);
     receive(bus::topics::kMapPoints, clouds_);
     receive(bus::topics::kDiagnostics, diagnostics_);
+    config_.core = test_support::settled();
     config_.map_period_ms = 20;
     config_.path_period_ms = 1;
   }

@@ -52,11 +52,12 @@ TEST_P(FaultySensor, is_covered_by_the_default_calibration_error) {
   EXPECT_LT(mean, 11.7);
 }
 
-/// Without a filter the people take the pose along, half a metre and more, with hundreds of inliers.
+/// With neither filter nor witnesses the people take the pose along, half a metre and more, with hundreds of inliers.
 TEST(DoubtfulPoses, are_called_so_when_movers_take_the_pose_along) {
   OfflineOptions options;
   options.source = "synthetic:office?frames=150&seed=1&sensor=kinect";
   options.front_end.mode = "off";
+  options.slam.witness.used = false;
   const OfflineReport off = run_offline(options);
   options.front_end.mode = "true-mask";
   const OfflineReport masked = run_offline(options);

@@ -6,6 +6,7 @@
 
 #include "services/slam/core/tracking/tracker.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 /// Makes a keyframe of every frame of a walk at 30 Hz: how many of the last 20 a bundle adjustment moved at once.
 int count_adjusted(double ba_gap_s) {
   constexpr std::uint64_t kFrames = 32, kCounted = 20;
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.mapper.ba_gap_s = ba_gap_s;
   config.mapper.redundant_ratio = 1;
   const test_support::FeatureWorld world = test_support::FeatureWorld::noisy();

@@ -8,6 +8,7 @@
 #include "services/slam/core/map/map_changes.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 #include "tests/unit/slam/store/memory_map_file.hpp"
 
 namespace rtd::slam {
@@ -23,7 +24,7 @@ using Kind = KeyframeChange::Kind;
 class RunningSlam : public ::testing::Test {
  protected:
   static SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
-    return {SlamConfig{}, mode, frozen_clock};
+    return {test_support::settled(), mode, frozen_clock};
   }
   /// Frames from `seq` up to but without `end`; the last output.
   SlamOutput play(SlamSystem& slam, std::uint64_t seq, std::uint64_t end) {

@@ -8,6 +8,7 @@
 
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -55,7 +56,7 @@ Eigen::Vector3d up_in_camera(const Eigen::Isometry3d& T_world_camera) {
 }
 
 SlamSystem slam_with(Gravity gravity, int wait_frames = 3) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.first_pose = kLevelCamera;
   config.gravity = gravity;
   config.prior.imu = gravity == Gravity::kImu;

@@ -15,6 +15,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -27,7 +28,7 @@ constexpr std::uint64_t kFrames = 90;
 
 /// The features are those of a camera that is known exactly.
 SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.sensor.calibration_error = 0;
   return {config, mode, frozen_clock};
 }
@@ -86,10 +87,10 @@ TEST(SlamSystem, follows_stamps_that_jump_to_the_ends_of_time) {
 
 TEST(SlamSystem, the_first_pose_says_where_the_world_is) {
   const FeatureWorld world({});
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.first_pose = geometry::se3_exp((geometry::Vector6d() << 0.2, 0, 0.5, -1.2, 1.2, -1.2).finished());
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
-  SlamSystem usual(SlamConfig(), MappingMode::kSynchronous, frozen_clock);
+  SlamSystem usual(test_support::settled(), MappingMode::kSynchronous, frozen_clock);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
     const SlamOutput output = slam.process(*world.view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
@@ -163,7 +164,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
 
 TEST(SlamSystem, is_lost_without_features_and_recovers) {
   const FeatureWorld world({});
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.tracker.recently_lost_s = 0.14;  // five frames
   config.techniques.prediction = false;
   SlamSystem slam(config, MappingMode::kSynchronous, frozen_clock);
@@ -224,7 +225,7 @@ TEST(SlamSystem, continues_from_frame_to_frame_without_the_map) {
 
 /// A map of at least 20 keyframes, which odometry leaves as it is.
 SlamSystem make_slam_that_maps_densely(double new_map_after_s) {
-  SlamConfig config;
+  SlamConfig config = test_support::settled();
   config.sensor.calibration_error = 0;
   config.keyframe.min_gap_s = 0;
   config.keyframe.reference_ratio = 1;
@@ -315,7 +316,7 @@ TEST(SlamSystem, finds_back_after_a_jump) {
   constexpr std::uint64_t kFar = 30;  // half a metre and twenty degrees away, in the next frame
   auto jumped = world.view(10, FeatureWorld::T_world_camera(kFar));
   const SlamOutput output = slam.process(*jumped);
-  ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
+  ASSERT_EQ(output.result.state, TrackingState::kDoubtful) << output.problem << ": no hand is so fast";
   EXPECT_LT(position_error_m(output.result.T_world_camera, kFar), 1e-3);
 }
 

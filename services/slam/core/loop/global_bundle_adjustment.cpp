@@ -18,8 +18,7 @@ void add_observations(const Map& map, const Landmark& landmark, std::uint32_t po
     const auto camera = std::lower_bound(problem.keyframes.begin(), problem.keyframes.end(), keyframe.id);
     if (camera == problem.keyframes.end() || *camera != keyframe.id) continue;
     const auto index = static_cast<std::uint32_t>(camera - problem.keyframes.begin());
-    problem.bundle.observations.push_back(
-        bundle_observation(*keyframe.frame, observation.feature, landmark, index, point));
+    problem.bundle.observations.push_back(bundle_observation(keyframe, observation.feature, landmark, index, point));
   }
 }
 

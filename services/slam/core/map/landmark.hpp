@@ -41,8 +41,11 @@ struct Landmark {
   double min_distance_m = 0, max_distance_m = 0;       ///< from where the pyramid can show it
   double static_probability = 1.0;                     ///< mean over the features that it was seen as
   bool in_question = false;                            ///< all of them were: see static_weight()
-  msg::Descriptor descriptor{};                        ///< the observation that is nearest to all others
-  std::vector<Observation> observations;               ///< ordered by keyframe, one per keyframe
+  /// Seen to rest: by two keyframes that witnesses carried, at least half a second apart.
+  bool witness = false;
+  std::int64_t carried_since_ns = 0;      ///< stamp of the first such keyframe; 0: none
+  msg::Descriptor descriptor{};           ///< the observation that is nearest to all others
+  std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
 };
 
 /// What a landmark says about a pose that sees it as `feature`: the smaller of their probabilities. Where the feature

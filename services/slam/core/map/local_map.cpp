@@ -36,6 +36,7 @@ LocalLandmark copy_landmark(const Landmark& landmark) {
           landmark.max_distance_m,
           landmark.static_probability,
           landmark.in_question,
+          landmark.witness,
           landmark.observation_weight,
           landmark.descriptor,
           0,

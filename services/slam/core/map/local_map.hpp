@@ -17,6 +17,7 @@ struct LocalLandmark {
   double min_distance_m = 0, max_distance_m = 0;
   double static_probability = 1.0;
   bool in_question = false;
+  bool witness = false;
   int observation_weight = 0;
   msg::Descriptor descriptor{};
   std::uint32_t first_observer = 0, observers = 0;  ///< range in LocalMap::observers

@@ -114,6 +114,9 @@ void Map::replace_landmark(LandmarkId lost_id, LandmarkId kept_id) {
   remove_landmark(lost_id);
   for (const Observation& observation : lost.observations) add_observation(kept_id, observation);
   Landmark& kept = landmarks_.at(kept_id);
+  kept.witness = kept.witness || lost.witness;
+  if (kept.carried_since_ns == 0 || (lost.carried_since_ns != 0 && lost.carried_since_ns < kept.carried_since_ns))
+    kept.carried_since_ns = lost.carried_since_ns;
   kept.visible += lost.visible;
   kept.found += lost.found;
   refresh_landmark(kept_id);

@@ -26,6 +26,8 @@ struct Keyframe {
   std::vector<KeyframeId> children;     ///< keyframes whose parent it is, ascending
   MapId map = 0;                        ///< component that it belongs to
   double way_m = 0;                     ///< from the first keyframe to this one, along the keyframes
+  bool carried = true;                  ///< WitnessVerdict::carried: what it sees may become a witness
+  double probation_weight = 1;          ///< factor on what landmarks weigh here that are no witnesses
   /// Of its pose in the world, (x y z rx ry rz); empty when unknown: the first of a map.
   std::optional<geometry::Matrix6d> covariance = std::nullopt;
 

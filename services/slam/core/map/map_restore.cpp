@@ -46,6 +46,7 @@ Map::Map(MapContents contents)
       next_landmark_(contents.next_landmark) {
   for (Landmark& landmark : contents.landmarks) {
     const LandmarkId id = landmark.id;
+    landmark.witness = true;  // what stood there for a moment has not been kept
     landmarks_.emplace(id, std::move(landmark));
   }
   SharedLandmarks shared(contents.keyframes);

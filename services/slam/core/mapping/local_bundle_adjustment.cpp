@@ -62,9 +62,8 @@ void add_observations(const Map& map, LocalProblem& problem) {
     for (const Observation& observation : landmark.observations) {
       const auto camera = problem.camera_index.find(observation.keyframe);
       if (camera == problem.camera_index.end()) continue;
-      const Frame& frame = *map.find_keyframe(observation.keyframe)->frame;
-      problem.bundle.observations.push_back(
-          bundle_observation(frame, observation.feature, landmark, camera->second, point));
+      problem.bundle.observations.push_back(bundle_observation(*map.find_keyframe(observation.keyframe),
+                                                               observation.feature, landmark, camera->second, point));
     }
   }
 }
@@ -136,10 +135,12 @@ void set_intrinsics(const Map& map, const std::vector<KeyframeId>& keyframes, Bu
   }
 }
 
-BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
+BundleObservation bundle_observation(const Keyframe& keyframe, std::uint32_t feature, const Landmark& landmark,
                                      std::uint32_t camera, std::uint32_t point) {
+  const Frame& frame = *keyframe.frame;
   const msg::Feature& f = frame.features[feature];
-  const double weight = static_weight(f, landmark.static_probability, landmark.in_question);
+  const double weight = static_weight(f, landmark.static_probability, landmark.in_question) *
+                        (landmark.witness ? 1.0 : keyframe.probation_weight);
   return {camera, point, frame.measurement(feature), sigma_px(f.octave), std::max(weight, 1e-3), true};
 }
 

@@ -40,6 +40,7 @@ KeyframeId Mapper::insert(const KeyframeProposal& proposal, const std::function<
   recent_.cull(map_, keyframe, config_.mapper.min_found_ratio);
   create_landmarks(keyframe);
   if (!busy()) fuse_landmarks(map_, keyframe, config_.mapper.neighbours);
+  confirm_witnesses(keyframe);
   std::vector<KeyframeId> adjusted;
   if (!busy() && due_for_adjustment(keyframe)) {
     adjusted = adjust_local_map(map_, keyframe, config_.mapper, interrupted);
@@ -72,12 +73,28 @@ KeyframeId Mapper::add_keyframe(const KeyframeProposal& proposal) {
   const KeyframeId parent = first ? kNoKeyframe : map_.living_ancestor(proposal.reference).first;
   const KeyframeId id = map_.add_keyframe(proposal.frame, geometry::normalized(T_world_camera), parent);
   map_.find_keyframe(id)->covariance = proposal.covariance;
+  map_.find_keyframe(id)->carried = proposal.carried;
+  map_.find_keyframe(id)->probation_weight = proposal.probation_weight;
   for (std::uint32_t feature = 0; feature < proposal.landmarks.size(); ++feature) {
     const LandmarkId landmark = proposal.landmarks[feature];
     if (landmark == kNoLandmark || map_.find_landmark(landmark) == nullptr) continue;
     if (map_.add_observation(landmark, {id, feature})) map_.refresh_landmark(landmark);
   }
   return id;
+}
+
+/// A keyframe that witnesses did not carry makes none: what it sees may be what it follows.
+void Mapper::confirm_witnesses(KeyframeId id) {
+  const Keyframe& keyframe = *map_.find_keyframe(id);
+  if (!keyframe.carried) return;
+  const std::int64_t now_ns = keyframe.frame->stamp_ns;
+  for (const LandmarkId landmark_id : keyframe.landmarks) {
+    if (landmark_id == kNoLandmark) continue;
+    Landmark& landmark = *map_.find_landmark(landmark_id);
+    if (landmark.witness) continue;
+    if (landmark.carried_since_ns == 0) landmark.carried_since_ns = now_ns;
+    landmark.witness = msg::minus_s(now_ns, landmark.carried_since_ns) >= config_.witness.after_s;
+  }
 }
 
 void Mapper::count_statistics(const std::vector<LandmarkStatistics>& statistics) {

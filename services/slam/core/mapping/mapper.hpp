@@ -29,6 +29,8 @@ struct KeyframeProposal {
   std::vector<LandmarkId> landmarks;  ///< per feature
   std::vector<LandmarkStatistics> statistics;
   std::optional<geometry::Matrix6d> covariance = std::nullopt;  ///< Keyframe::covariance
+  bool carried = true;                                          ///< Keyframe::carried
+  double probation_weight = 1;                                  ///< Keyframe::probation_weight
 };
 
 /// What became of a keyframe since it was last announced.
@@ -79,6 +81,7 @@ class Mapper {
 
  private:
   KeyframeId add_keyframe(const KeyframeProposal& proposal);
+  void confirm_witnesses(KeyframeId id);
   void count_statistics(const std::vector<LandmarkStatistics>& statistics);
   void create_landmarks(KeyframeId keyframe);
   void cull_keyframes(KeyframeId newest);

@@ -74,7 +74,7 @@ std::vector<KeyframeId> adjust_local_map(Map& map, KeyframeId newest, const Mapp
 void set_intrinsics(const Map& map, const std::vector<KeyframeId>& keyframes, BundleProblem& bundle);
 
 /// One observation of a landmark as bundle adjustment weighs it.
-BundleObservation bundle_observation(const Frame& frame, std::uint32_t feature, const Landmark& landmark,
+BundleObservation bundle_observation(const Keyframe& keyframe, std::uint32_t feature, const Landmark& landmark,
                                      std::uint32_t camera, std::uint32_t point);
 
 }  // namespace rtd::slam

@@ -8,6 +8,7 @@
 #include "common/msg/stamps.hpp"
 #include "common/vision/samples.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
+#include "services/slam/core/tracking/witnesses.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -73,6 +74,12 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   last_.frame = std::move(frame);
   last_.reference = map->keyframes.front().id;
   last_.T_world_camera = map->keyframes.front().T_world_camera;
+  support_ = {};
+  probation_weight_ = 1;
+  settling_since_ns_.reset();
+  if (config_.witness.used && config_.witness.settle_s > 0) settling_since_ns_ = last_.frame->stamp_ns;
+  outcome.settling = settling_since_ns_.has_value();
+  if (outcome.settling) outcome.state = msg::TrackingState::kDoubtful;
   outcome.tracked = last_;
   outcome.inliers = static_cast<int>(map->landmarks.size());
   motion_.reset();
@@ -95,6 +102,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   outcome.map = relocalizer_.choose_map(snapshot, last_.reference);
   adopt(*outcome.map);
   expect(*frame);
+  position_ = position_since_last(*frame);
   if (apart_since_ns_) outcome.T_world_expected = predict(*frame).T_world_camera;
   LocalMapTracking tracking;
   std::int64_t optimizer_ns = 0;
@@ -118,6 +126,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
   outcome.stage_ms[msg::kStagePose] = to_ms(optimizer_ns);
   outcome.inliers = tracking.guess.inliers;
   const std::int64_t failed_ns = now_ns_();
+  position_.reset();
   rotation_.reset();  // of a camera that is elsewhere nothing is known
   auto found = follows_prior(*frame) ? std::nullopt : relocalizer_.search(frame, msg::has_pose(state_), context());
   outcome.stage_ms[msg::kStageRelocalize] = to_ms(now_ns_() - failed_ns);
@@ -139,6 +148,7 @@ void Tracker::await_relocalization() {
   motion_.reset();
   last_ = TrackedFrame{};
   apart_since_ns_.reset();
+  settling_since_ns_.reset();  // it was there before those who walk now
   state_ = msg::TrackingState::kLost;
   relocalizer_.await();
 }
@@ -173,6 +183,18 @@ ExpectedPose Tracker::predict(const Frame& frame) const {
   const double gap_s = frame_gap_s(*last_.frame, frame);
   if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return {last_.T_world_camera};
   return {last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s)};
+}
+
+/// A camera keeps moving as it did: inertia decides what landmarks on one side of the image leave open.
+/// docs/theory/tracking.md Eq. (20).
+std::optional<vision::PositionPrior> Tracker::position_since_last(const Frame& frame) const {
+  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
+  const bool in_time = gap_s > 0 && gap_s <= kMaxPredictionGap_s;
+  const double inertia_m_s2 = config_.tracker.inertia_m_s2;
+  if (inertia_m_s2 == 0 || !in_time || !motion_ || !msg::has_pose(state_) || follows_prior(frame)) return std::nullopt;
+  constexpr double kOfLastPoses_m = 0.005;
+  return vision::PositionPrior{predict(frame).T_world_camera.translation(),
+                               kOfLastPoses_m + inertia_m_s2 * gap_s * gap_s};
 }
 
 /// The pose that may be claimed though nothing was measured; empty when too long ago.
@@ -224,6 +246,7 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
   const double elapsed_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
   apart_since_ns_.reset();
+  outcome.impossible = moves_impossibly(*frame, tracking.guess.T_world_camera);
   consistency_.add(*frame, *outcome.map, tracking, elapsed_s);
   follow(std::move(frame), *outcome.map, tracking);
   outcome.tracked = last_;
@@ -241,7 +264,11 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   const geometry::Matrix6d measured = config_.sensor.shared_error * tracking.guess.covariance;
   const geometry::Matrix6d local = measured + consistency_.covariance(scene_m_);
   outcome.sigma_m = geometry::largest_sigma(measured.topLeftCorner<3, 3>());
-  outcome.state = consistency_.doubts(outcome.sigma_m) ? msg::TrackingState::kDoubtful : state_;
+  outcome.settling = settles();
+  outcome.unwitnessed = support_.contradicted;
+  const bool unsupported = outcome.unwitnessed || outcome.settling || outcome.impossible;
+  const bool doubtful = consistency_.doubts(outcome.sigma_m) || unsupported;
+  outcome.state = doubtful ? msg::TrackingState::kDoubtful : state_;
   covariance_ = uncertainty_.in_world(local, last_.T_world_camera.translation(), last_.landmarks, *outcome.map);
   map_covariance_ = covariance_ - local;
   if (prior_ != nullptr && !weighed_) {  // it has the gyroscope itself
@@ -290,6 +317,29 @@ bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_wo
   return within(geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera, kMaxOff_m, kMaxOff_rad);
 }
 
+/// Whether the map has just begun, and nothing in view has been seen at rest for long enough: all of it may move.
+bool Tracker::settles() {
+  if (!settling_since_ns_) return false;
+  const double since_s = msg::minus_s(last_.frame->stamp_ns, *settling_since_ns_);
+  if (support_.witnessed || since_s >= config_.witness.settle_s) settling_since_ns_.reset();
+  return settling_since_ns_.has_value();
+}
+
+/// Whether neither a hand nor a robot carries a camera from the last pose to this one, and no IMU or wheels say so.
+bool Tracker::moves_impossibly(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
+  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
+  if (!msg::has_pose(state_) || gap_s <= 0) return false;
+  if (follows_prior(frame) &&
+      pose_distance2(*expected_, {T_world_camera, geometry::Matrix6d::Zero()}) < kMaxPoseDistance2)
+    return false;
+  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
+  if (T_last_camera.translation().norm() > config_.tracker.max_speed_m_s * gap_s) return true;
+  if (!motion_ || gap_s > kMaxPredictionGap_s) return false;
+  const Eigen::Isometry3d T_expected_camera =
+      geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera;
+  return T_expected_camera.translation().norm() > config_.tracker.max_acceleration_m_s2 * gap_s * gap_s;
+}
+
 /// No pose yet: the next frames have to agree. But a place where the camera was a moment ago is no other place.
 void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found) {
   const bool same_place = found.place->find_keyframe(last_.reference) != nullptr;
@@ -322,6 +372,8 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   if (map.find_keyframe(last_.reference) == nullptr) last_.reference = map.keyframes.front().id;
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
   inliers_ = tracking.guess.inliers;
+  probation_weight_ = tracking.guess.probation_weight;
+  support_ = judge_witnesses(look_for_witnesses(*last_.frame, map, tracking), config_.witness);
   rotation_covariance_ = tracking.guess.covariance.bottomRightCorner<3, 3>();
 }
 
@@ -343,7 +395,8 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.map_keyframes = static_cast<int>(map.component_keyframes);
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
-  situation.covered = weighed_ || waits_apart();
+  situation.covered = weighed_ || waits_apart() || support_.contradicted;
+  situation.settling = settling_since_ns_ && situation.since_keyframe_s >= config_.witness.after_s;
   situation.odometry = state_ == msg::TrackingState::kOdometry && !waits_apart();
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
     situation.reference_landmarks = map.confirmed_landmarks(*reference);
@@ -364,6 +417,8 @@ KeyframeProposal Tracker::propose_keyframe() {
     consistency_.reset();
   }
   proposal.covariance = covariance_;
+  proposal.carried = support_.carried;
+  proposal.probation_weight = probation_weight_;
   for (const auto& [id, statistics] : statistics_) proposal.statistics.push_back(statistics);  // sums: order is free
   statistics_.clear();
   keyframe_ns_ = last_.frame->stamp_ns;
@@ -380,7 +435,7 @@ bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
   const bool convenient = s.since_keyframe_s >= config.min_gap_s && s.mapper_idle;
   const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
   const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
-  return (overdue || convenient || weak) && new_view && s.inliers > config.min_inliers && !s.covered;
+  return (s.settling || ((overdue || convenient || weak) && new_view)) && s.inliers > config.min_inliers && !s.covered;
 }
 
 }  // namespace rtd::slam

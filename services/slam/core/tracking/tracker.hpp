@@ -18,6 +18,7 @@
 #include "services/slam/core/tracking/pose_uncertainty.hpp"
 #include "services/slam/core/tracking/relocalizer.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
+#include "services/slam/core/tracking/witnesses.hpp"
 
 namespace rtd::slam {
 
@@ -31,6 +32,7 @@ struct KeyframeSituation {
   int close_untracked = 0;      ///< close features that could become some
   bool mapper_idle = true;
   bool odometry = false;  ///< the map is not recognised, and young or for long: it must grow here
+  bool settling = false;  ///< a new map needs a second look at what it shows
   bool covered = false;   ///< something hides most of the view, and IMU or wheels help out
 };
 
@@ -46,6 +48,9 @@ struct TrackOutcome {
   int inliers = 0;
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
+  bool impossible = false;            ///< no hand and no robot moves like that
+  bool unwitnessed = false;           ///< WitnessVerdict::contradicted
+  bool settling = false;              ///< nothing in the new map has been seen at rest for long enough
   bool contradicted = false;          ///< an IMU expected another pose less than a second ago
   std::vector<Association> rejected;  ///< landmarks that were recognised and contradict the measured pose
   /// Odometry continues beside the map, which is old and does not change. At the first frame after it: where odometry
@@ -102,7 +107,7 @@ class Tracker {
   KeyframeProposal propose_keyframe();
 
  private:
-  TrackingContext context() const { return {config_, now_ns_, rotation_}; }
+  TrackingContext context() const { return {config_, now_ns_, rotation_, position_}; }
   /// What an error of the calibration adds by the way from where the map began. docs/theory/tracking.md Eq. (15).
   geometry::Matrix6d of_calibration(const Eigen::Isometry3d& T_world_camera) const {
     return calibration_covariance(config_.first_pose.inverse() * T_world_camera, scene_m_,
@@ -111,6 +116,7 @@ class Tracker {
   void adopt_pose(const LocalMap& map);
   ExpectedPose predict(const Frame& frame) const;
   void expect(const Frame& frame);
+  std::optional<vision::PositionPrior> position_since_last(const Frame& frame) const;
   std::optional<vision::RotationPrior> rotation_since_last(std::int64_t now_ns) const;
   double expected_radius_px(const Frame& frame) const;
   bool follows_prior(const Frame& frame) const;
@@ -129,6 +135,8 @@ class Tracker {
   bool acceptable(const PoseGuess& guess) const;
   bool believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const;
   bool continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
+  bool settles();
+  bool moves_impossibly(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   void enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found);
   void follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking);
   void accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking);
@@ -144,6 +152,7 @@ class Tracker {
   MotionPrior* prior_;
   std::optional<PredictedPose> expected_;          ///< of the frame in work, by the prior
   std::optional<vision::RotationPrior> rotation_;  ///< of the frame in work, by the gyroscope from last_ on
+  std::optional<vision::PositionPrior> position_;  ///< of the frame in work
   Eigen::Matrix3d rotation_covariance_ = Eigen::Matrix3d::Zero();  ///< of last_ against the map, in the world
   std::optional<std::int64_t> contradicted_ns_;  ///< stamp of the last believed pose that the prior contradicted
   geometry::Matrix6d contradiction_ = geometry::Matrix6d::Zero();  ///< square of how far off it was expected
@@ -159,9 +168,12 @@ class Tracker {
   double scene_m_ = 0;                                              ///< how far away what last_ sees is
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
-  std::int64_t keyframe_ns_ = 0;                  ///< stamp of the last frame that was proposed
-  std::optional<std::int64_t> apart_since_ns_;    ///< stamp of the first frame of TrackOutcome::apart, while it is
-  std::optional<std::int64_t> failing_since_ns_;  ///< stamp of the first frame without a pose, while there is none
+  WitnessVerdict support_;                         ///< of last_
+  double probation_weight_ = 1;                    ///< PoseGuess::probation_weight of last_
+  std::optional<std::int64_t> settling_since_ns_;  ///< stamp of a map's first frame, while nothing in it is a witness
+  std::int64_t keyframe_ns_ = 0;                   ///< stamp of the last frame that was proposed
+  std::optional<std::int64_t> apart_since_ns_;     ///< stamp of the first frame of TrackOutcome::apart, while it is
+  std::optional<std::int64_t> failing_since_ns_;   ///< stamp of the first frame without a pose, while there is none
   std::size_t next_recovery_ = 0;
   std::pmr::unsynchronized_pool_resource statistics_memory_;  ///< used again from keyframe to keyframe
   StatisticsById statistics_{&statistics_memory_};

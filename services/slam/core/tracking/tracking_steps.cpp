@@ -3,6 +3,7 @@
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/msg/stamps.hpp"
 #include "services/slam/core/map/frame.hpp"
@@ -17,7 +18,7 @@ constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
 
 /// A landmark as the world point of a feature.
 Association associate(std::uint32_t feature, const LocalLandmark& landmark) {
-  return {feature, landmark.id, landmark.position, landmark.static_probability, landmark.in_question};
+  return {feature, landmark.id, landmark.position, landmark.static_probability, landmark.witness, landmark.in_question};
 }
 
 vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
@@ -26,18 +27,65 @@ vision::PoseObservation make_observation(const Frame& frame, const Association& 
           static_weight(feature, association.static_probability, association.in_question)};
 }
 
+constexpr int kFewestWitnesses = 8;  ///< two points on one edge must not outweigh an image
+/// A pose with which fewer of the witnesses agree is compared with one of which hardly anything else decides.
+constexpr double kMostOfThem = 0.6, kHardlyAny = 0.01, kClearlyMore = 1.25;
+
+/// How many agree, and how many there are.
+std::pair<int, int> count_witnesses(const std::vector<Association>& associations, const std::vector<char>& inlier) {
+  std::pair<int, int> counts{0, 0};
+  for (std::size_t i = 0; i < associations.size(); ++i) {
+    if (!associations[i].witness) continue;
+    counts.first += inlier[i] != 0 ? 1 : 0;
+    ++counts.second;
+  }
+  return counts;
+}
+
+/// Witnesses carry the pose: what is on probation weighs at most a share of them, however much of it there is. Returns
+/// the factor of its weights.
+double weigh_probation(const std::vector<Association>& associations, const WitnessConfig& config,
+                       std::vector<vision::PoseObservation>& observations) {
+  int witnesses = 0;
+  double of_witnesses = 0, of_others = 0;
+  for (std::size_t i = 0; i < associations.size(); ++i) {
+    witnesses += associations[i].witness ? 1 : 0;
+    (associations[i].witness ? of_witnesses : of_others) += observations[i].weight;
+  }
+  if (!config.used || witnesses < kFewestWitnesses || of_others <= config.probation_share * of_witnesses) return 1;
+  const double factor = config.probation_share * of_witnesses / of_others;
+  for (std::size_t i = 0; i < associations.size(); ++i) {
+    if (!associations[i].witness) observations[i].weight *= factor;
+  }
+  return factor;
+}
+
 PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
                    const Eigen::Isometry3d& T_world_camera_initial, const TrackingContext& context) {
   const std::int64_t start_ns = context.now_ns();
   std::vector<vision::PoseObservation> observations;
   observations.reserve(associations.size());
   for (const Association& association : associations) observations.push_back(make_observation(frame, association));
+  double probation_weight = weigh_probation(associations, context.config.witness, observations);
   vision::PoseOptimizerOptions options;
   if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
   options.rotation = context.rotation;
-  const auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
+  options.position = context.position;
+  auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
+  const auto [agreeing, witnesses] = count_witnesses(associations, optimized.inlier);
+  if (context.config.witness.used && witnesses >= kFewestWitnesses && agreeing < kMostOfThem * witnesses) {
+    for (std::size_t i = 0; i < associations.size(); ++i) {
+      if (!associations[i].witness) observations[i].weight *= kHardlyAny;
+    }
+    auto by_them = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
+    if (by_them.success && count_witnesses(associations, by_them.inlier).first > kClearlyMore * agreeing) {
+      optimized = std::move(by_them);
+      probation_weight *= kHardlyAny;
+    }
+  }
   PoseGuess guess;
   guess.success = optimized.success;
+  guess.probation_weight = probation_weight;
   guess.T_world_camera = optimized.T_world_camera;
   guess.covariance = optimized.covariance;
   guess.image_covariance = optimized.image_covariance;
@@ -49,6 +97,7 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
     if (associations[i].landmark == kNoLandmark) continue;
     guess.landmarks[associations[i].feature] = associations[i].landmark;
     ++guess.inliers;
+    guess.witnesses += associations[i].witness ? 1 : 0;
   }
   return guess;
 }

@@ -32,6 +32,8 @@ struct PoseGuess {
   bool guided = true;  ///< by the motion; else by descriptors alone
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   std::vector<LandmarkId> landmarks;  ///< per feature
+  int witnesses = 0;                  ///< of the inliers
+  double probation_weight = 1;        ///< factor on the weights of all that are no witnesses
   int inliers = 0;                    ///< landmarks, without temporary points
   int points = 0;                     ///< with them
   std::int64_t optimizer_ns = 0;      ///< spent in pose optimisation
@@ -45,6 +47,7 @@ struct Association {
   LandmarkId landmark = kNoLandmark;  ///< kNoLandmark: a temporary point
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
   double static_probability = 1.0;
+  bool witness = false;     ///< Landmark::witness
   bool in_question = true;  ///< Landmark::in_question; a temporary point is no more known than its feature
 };
 
@@ -53,6 +56,7 @@ struct TrackingContext {
   const SlamConfig& config;
   const Clock& now_ns;
   std::optional<vision::RotationPrior> rotation = {};  ///< of the frame, by a gyroscope
+  std::optional<vision::PositionPrior> position = {};  ///< of the frame, by the last motion
 };
 
 /// Where the camera is looked for.

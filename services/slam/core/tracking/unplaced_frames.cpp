@@ -74,6 +74,9 @@ std::string problem_of(const TrackOutcome& outcome, int needed) {
   if (outcome.state == State::kOk) return "";
   if (outcome.contradicted)
     return state + ": within the last second, the IMU expected another pose than was found; either may be wrong";
+  if (outcome.impossible) return state + ": a hand or a robot does not carry a camera so fast";
+  if (outcome.settling) return state + ": the map has just begun, and nothing in view has been seen at rest for long";
+  if (outcome.unwitnessed) return state + ": what was seen at rest before is not where this pose shows it";
   if (outcome.state == State::kDoubtful)
     return state + ": " + std::to_string(std::lround(100 * outcome.consistency)) +
            " % of the matched landmarks agree closely with the pose, which is known to " +

@@ -10,6 +10,7 @@
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/pose_error.hpp"
+#include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -56,7 +57,7 @@ class InertialTracking : public ::testing::Test {
 
   FeatureWorld world_;
   SyntheticImu imu_;
-  SlamConfig config_;
+  SlamConfig config_ = test_support::settled();
   std::optional<SlamSystem> slam_;
   std::int64_t next_imu_ = 0;
   Eigen::Vector3d gyro_error_rad_s_ = Eigen::Vector3d::Zero();  ///< more than its bias

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "services/slam/core/tracking/tracking_steps.hpp"
+
+namespace rtd::slam {
+
+/// How much of a frame speaks for its pose: tiles of the image, 8 x 6.
+struct WitnessView {
+  int with_features = 0;  ///< static ones
+  int agreeing = 0;       ///< with landmarks that agree with the pose
+  int expected = 0;       ///< where witnesses should be seen
+  int found = 0;          ///< where one of them agrees with the pose
+  int witnesses = 0;      ///< that agree; landmarks, not tiles
+};
+WitnessView look_for_witnesses(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking);
+
+/// Who carries a pose. docs/theory/tracking.md, "Witnesses".
+struct WitnessVerdict {
+  bool witnessed = false;     ///< witnesses do
+  bool carried = true;        ///< they do, or much of a view in which there are hardly any: what rests may be learnt
+  bool contradicted = false;  ///< they should be seen and are not where the pose shows them: it is doubtful
+};
+WitnessVerdict judge_witnesses(const WitnessView& view, const WitnessConfig& config);
+
+}  // namespace rtd::slam
