@@ -56,7 +56,7 @@ void classify(const RgbdProjection& camera, const std::vector<PoseObservation>& 
 struct Information {
   Matrix6d pixels = Matrix6d::Zero(), depths = Matrix6d::Zero();  ///< Gauss-Newton Hessians, weights not squared
   Matrix6d pixels_squared = Matrix6d::Zero(), depths_squared = Matrix6d::Zero();  ///< weights squared
-  Matrix6d rotation = Matrix6d::Zero();                                           ///< of a RotationPrior
+  Matrix6d known = Matrix6d::Zero();  ///< of a RotationPrior and a PositionPrior
   double pixel_chi2 = 0, depth_chi2 = 0, pixel_residuals = 0, depth_residuals = 0;
 };
 
@@ -93,15 +93,15 @@ bool expected(const PositionPrior& position, const Eigen::Isometry3d& T_camera_w
   return (T_camera_world * position.p_world).norm() <= kMostSigmas * position.sigma_m;
 }
 
+/// Adds what a known position says.
 void add_position(const PositionPrior& position, const Eigen::Isometry3d& T_camera_world, Information& sum) {
-  Matrix36d J;
-  J << Eigen::Matrix3d::Identity(), -geometry::skew(T_camera_world.linear() * position.p_world);
-  sum.rotation += J.transpose() * J / (position.sigma_m * position.sigma_m);
+  const Matrix36d J = point_jacobian(T_camera_world.linear() * position.p_world, Eigen::Matrix3d::Identity());
+  sum.known += J.transpose() * J / (position.sigma_m * position.sigma_m);
 }
 
 /// Adds what a known rotation says, whose covariance is right.
 void add_rotation(const RotationPrior& rotation, Information& sum) {
-  sum.rotation.bottomRightCorner<3, 3>() += rotation.covariance.inverse();
+  sum.known.bottomRightCorner<3, 3>() += rotation.covariance.inverse();
 }
 
 /// Variance of whitened residuals, as found. Few of them are uncertain: the assumed 1 counts as this many more.
@@ -126,7 +126,7 @@ bool world_covariance(const Information& information, const Eigen::Isometry3d& T
   // Metres and radians are of like size here; a direction known ten million times worse than the best is not known.
   constexpr double kMinConditionInverse = 1e-14;
   constexpr double kPixelLimit = 7.0;  // between the limits of inliers with and without depth
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information.pixels + information.depths + information.rotation);
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(information.pixels + information.depths + information.known);
   const Vector6d& values = eigen.eigenvalues();
   if (!(values.maxCoeff() > 0) || values.minCoeff() < kMinConditionInverse * values.maxCoeff()) return false;
   const Matrix6d inverse = eigen.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
@@ -138,12 +138,18 @@ bool world_covariance(const Information& information, const Eigen::Isometry3d& T
   const Matrix6d M = untruncated(found_variance(information.pixel_chi2, information.pixel_residuals), kPixelLimit) *
                          information.pixels_squared +
                      found_variance(information.depth_chi2, information.depth_residuals) * information.depths_squared +
-                     information.rotation;
+                     information.known;
   covariance = A * inverse * M * inverse * A.transpose();
   return true;
 }
 
 }  // namespace
+
+Matrix36d point_jacobian(const Eigen::Vector3d& p_rotated, const Eigen::Matrix3d& left_jacobian) {
+  Matrix36d J;
+  J << Eigen::Matrix3d::Identity(), -geometry::skew(p_rotated) * left_jacobian;
+  return J;
+}
 
 Matrix36d pose_jacobian(const RgbdProjection& camera, const Eigen::Vector3d& p_rotated, const Eigen::Vector3d& p_camera,
                         const Eigen::Matrix3d& left_jacobian, const RgbdMeasurement& measured) {

@@ -69,6 +69,10 @@ PoseOptimizerResult optimize_pose(const RgbdProjection& camera, const std::vecto
                                   const Eigen::Isometry3d& T_world_camera_initial,
                                   const PoseOptimizerOptions& options = {});
 
+/// The 3x6 derivative of p_camera = exp(phi) R p_world + t + rho with respect to [rho; phi], given `p_rotated` =
+/// exp(phi) R p_world and so3_left_jacobian(phi). docs/theory/tracking.md Eq. (2).
+Eigen::Matrix<double, 3, 6> point_jacobian(const Eigen::Vector3d& p_rotated, const Eigen::Matrix3d& left_jacobian);
+
 /// The 3x6 derivative of rgbd_residual with respect to [rho; phi] in p_camera = exp(phi) R p_world + t + rho, given
 /// `p_rotated` = exp(phi) R p_world, p_camera and so3_left_jacobian(phi), the same for all points of a camera.
 /// docs/theory/tracking.md Eq. (2).

@@ -129,19 +129,17 @@ NormalEquations PoseCost::linearize(const Vector6d& x) const {
   const Eigen::Matrix3d left_jacobian = geometry::so3_left_jacobian(x.tail<3>());
   NormalEquations equations = sums.equations(left_jacobian);
   equations.squared = squared;
+  const Eigen::Matrix3d R = geometry::so3_exp(x.tail<3>()) * T_camera_world_.linear();
   if (options_.position) {  // seen from the right pose, it is at the origin of the camera
-    const Eigen::Vector3d rotated =
-        geometry::so3_exp(x.tail<3>()) * T_camera_world_.linear() * options_.position->p_world;
-    Eigen::Matrix<double, 3, 6> J;
-    J << Eigen::Matrix3d::Identity(), -geometry::skew(rotated) * left_jacobian;
-    J /= options_.position->sigma_m;
-    const Eigen::Vector3d r = (rotated + T_camera_world_.translation() + x.head<3>()) / options_.position->sigma_m;
+    const double sigma_m = options_.position->sigma_m;
+    const Eigen::Vector3d rotated = R * options_.position->p_world;
+    const Eigen::Matrix<double, 3, 6> J = point_jacobian(rotated, left_jacobian) / sigma_m;
+    const Eigen::Vector3d r = (rotated + T_camera_world_.translation() + x.head<3>()) / sigma_m;
     equations.hessian += J.transpose() * J;
     equations.descent -= J.transpose() * r;
   }
   if (options_.rotation) {
     const Eigen::Matrix3d root = root_information(*options_.rotation);
-    const Eigen::Matrix3d R = geometry::so3_exp(x.tail<3>()) * T_camera_world_.linear();
     const Eigen::Vector3d off_rad = error_rad(R, *options_.rotation);
     const Eigen::Matrix3d J = root * geometry::so3_left_jacobian(off_rad).inverse() * left_jacobian;
     equations.hessian.bottomRightCorner<3, 3>() += J.transpose() * J;

@@ -26,6 +26,17 @@ std::uint32_t oldest_observer(const LocalMap& map, const LocalLandmark& landmark
 
 }  // namespace
 
+Eigen::Isometry3d off_motion(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
+  return geometry::se3_exp(gap_s * motion.velocity_per_s).inverse() * T_last_camera;
+}
+
+bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
+  constexpr double kMaxAcceleration_m_s2 = 50, kMaxAcceleration_rad_s2 = 200;  // a hand that is struck
+  const Eigen::Isometry3d T_expected_camera = off_motion(motion, T_last_camera, gap_s);
+  return T_expected_camera.translation().norm() < kMaxAcceleration_m_s2 * gap_s * gap_s &&
+         geometry::rotation_angle_rad(T_expected_camera) < kMaxAcceleration_rad_s2 * gap_s * gap_s;
+}
+
 PredictedPose predict_motion(const CameraMotion& motion, double gap_s, const PredictionConfig& config) {
   const double tau_s = config.velocity_decay_s;
   const double reach_s = tau_s * (1 - std::exp(-gap_s / tau_s));

@@ -21,6 +21,15 @@ struct CameraMotion {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();      ///< of the pose, (x y z rx ry rz), world frame
 };
 
+inline constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
+
+/// Where a camera is that has gone `T_last_camera` in `gap_s`, seen from where it would be at constant velocity.
+Eigen::Isometry3d off_motion(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s);
+
+/// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
+/// was carried away, and the distance over the gap is not its velocity.
+bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s);
+
 /// A pose that nothing was measured for.
 struct PredictedPose {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();

@@ -13,26 +13,7 @@
 namespace rtd::slam {
 namespace {
 
-constexpr double kNanosecondsPerSecond = 1e9;
-/// Of the landmarks that should be seen, or of the features if fewer, so many must agree on a pose that the camera can
-/// hardly have reached. Wrong matches agree by chance to 0.17, true ones to 0.3.
-constexpr double kMinShareOfJump = 0.25;
-constexpr double kMaxPredictionGap_s = 0.5;  ///< nothing is known of the motion over a longer gap
 constexpr double kFirstPoseVariance = 1e-8;  ///< of the pose that makes the world
-
-double frame_gap_s(const Frame& earlier, const Frame& later) {
-  return static_cast<double>(msg::minus_ns(later.stamp_ns, earlier.stamp_ns)) / kNanosecondsPerSecond;
-}
-
-/// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
-/// was carried away, and the distance over the gap is not its velocity.
-bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s) {
-  constexpr double kMaxAcceleration_m_s2 = 50, kMaxAcceleration_rad_s2 = 200;  // a hand that is struck
-  const Eigen::Isometry3d T_expected_camera =
-      geometry::se3_exp(gap_s * motion.velocity_per_s).inverse() * T_last_camera;
-  return T_expected_camera.translation().norm() < kMaxAcceleration_m_s2 * gap_s * gap_s &&
-         geometry::rotation_angle_rad(T_expected_camera) < kMaxAcceleration_rad_s2 * gap_s * gap_s;
-}
 
 /// How far away what a frame sees is, m.
 double median_distance(const LocalMap& map, const TrackedFrame& tracked) {
@@ -180,27 +161,15 @@ ExpectedPose Tracker::predict(const Frame& frame) const {
   if (const auto held = state_ == msg::TrackingState::kPredicted ? hold(frame) : std::nullopt) {
     return {held->T_world_camera};
   }
-  const double gap_s = frame_gap_s(*last_.frame, frame);
+  const double gap_s = since_last_s(frame);
   if (!motion_ || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return {last_.T_world_camera};
   return {last_.T_world_camera * geometry::se3_exp(gap_s * motion_->velocity_per_s)};
-}
-
-/// A camera keeps moving as it did: inertia decides what landmarks on one side of the image leave open.
-/// docs/theory/tracking.md Eq. (20).
-std::optional<vision::PositionPrior> Tracker::position_since_last(const Frame& frame) const {
-  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
-  const bool in_time = gap_s > 0 && gap_s <= kMaxPredictionGap_s;
-  const double inertia_m_s2 = config_.tracker.inertia_m_s2;
-  if (inertia_m_s2 == 0 || !in_time || !motion_ || !msg::has_pose(state_) || follows_prior(frame)) return std::nullopt;
-  constexpr double kOfLastPoses_m = 0.005;
-  return vision::PositionPrior{predict(frame).T_world_camera.translation(),
-                               kOfLastPoses_m + inertia_m_s2 * gap_s * gap_s};
 }
 
 /// The pose that may be claimed though nothing was measured; empty when too long ago.
 std::optional<PredictedPose> Tracker::hold(const Frame& frame) const {
   if (last_.frame == nullptr) return std::nullopt;
-  const double gap_s = frame_gap_s(*last_.frame, frame);
+  const double gap_s = since_last_s(frame);
   const bool recent = gap_s > 0 && gap_s <= config_.prediction.max_hold_s;
   if (!config_.techniques.prediction || !motion_ || !msg::has_pose(state_) || !recent) return std::nullopt;
   CameraMotion motion = *motion_;
@@ -244,7 +213,7 @@ bool Tracker::acceptable(const PoseGuess& guess) const {
 
 /// The frame was tracked. After a recognised place some more must agree before a pose counts.
 void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracking& tracking) {
-  const double elapsed_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
+  const double elapsed_s = since_last_s(*frame);
   apart_since_ns_.reset();
   outcome.impossible = moves_impossibly(*frame, tracking.guess.T_world_camera);
   consistency_.add(*frame, *outcome.map, tracking, elapsed_s);
@@ -283,61 +252,12 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   }
 }
 
-/// Found by the reference keyframe's descriptors alone, or by hardly any landmark of the last frame, the camera may as
-/// well have been carried away to a place that looks alike.
-bool Tracker::believable(const Frame& frame, const PoseGuess& start, const LocalMapTracking& tracking) const {
-  if (contradicts_prior(frame, tracking)) return false;
-  if (!config_.techniques.place_recognition) return true;
-  if (continues_motion(frame, tracking.guess.T_world_camera)) return true;
-  if (!start.guided) return is_convincing(frame, tracking, config_.place);
-  if (!msg::has_pose(state_)) {
-    return start.inliers >= config_.tracker.min_inliers ||
-           agrees_widely(frame, tracking, config_.place.min_found_ratio);
-  }
-  return start.inliers >= config_.tracker.min_inliers && agrees_widely(frame, tracking, kMinShareOfJump);
-}
-
-/// Whether the camera got there as it moved before, or from rest as a hand may move it: no other place looks alike from
-/// just where it is expected.
-bool Tracker::continues_motion(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
-  constexpr double kMaxOff_m = 0.1, kMaxOff_rad = 0.2;  // however long the gap
-  constexpr double kMaxSpeed_m_s = 2, kMaxSpeed_rad_s = 5;
-  if (follows_prior(frame) &&
-      pose_distance2(*expected_, {T_world_camera, geometry::Matrix6d::Zero()}) < kMaxPoseDistance2)
-    return true;
-  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
-  if (!msg::has_pose(state_) || gap_s <= 0 || gap_s > kMaxPredictionGap_s) return false;
-  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
-  const auto within = [&](const Eigen::Isometry3d& T, double limit_m, double limit_rad) {
-    return T.translation().norm() <= std::min(limit_m, kMaxOff_m) &&
-           geometry::rotation_angle_rad(T) <= std::min(limit_rad, kMaxOff_rad);
-  };
-  if (within(T_last_camera, kMaxSpeed_m_s * gap_s, kMaxSpeed_rad_s * gap_s)) return true;
-  if (!motion_ || !is_steady(*motion_, T_last_camera, gap_s)) return false;
-  return within(geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera, kMaxOff_m, kMaxOff_rad);
-}
-
 /// Whether the map has just begun, and nothing in view has been seen at rest for long enough: all of it may move.
 bool Tracker::settles() {
   if (!settling_since_ns_) return false;
   const double since_s = msg::minus_s(last_.frame->stamp_ns, *settling_since_ns_);
   if (support_.witnessed || since_s >= config_.witness.settle_s) settling_since_ns_.reset();
   return settling_since_ns_.has_value();
-}
-
-/// Whether neither a hand nor a robot carries a camera from the last pose to this one, and no IMU or wheels say so.
-bool Tracker::moves_impossibly(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const {
-  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, frame);
-  if (!msg::has_pose(state_) || gap_s <= 0) return false;
-  if (follows_prior(frame) &&
-      pose_distance2(*expected_, {T_world_camera, geometry::Matrix6d::Zero()}) < kMaxPoseDistance2)
-    return false;
-  const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * T_world_camera;
-  if (T_last_camera.translation().norm() > config_.tracker.max_speed_m_s * gap_s) return true;
-  if (!motion_ || gap_s > kMaxPredictionGap_s) return false;
-  const Eigen::Isometry3d T_expected_camera =
-      geometry::se3_exp(gap_s * motion_->velocity_per_s).inverse() * T_last_camera;
-  return T_expected_camera.translation().norm() > config_.tracker.max_acceleration_m_s2 * gap_s * gap_s;
 }
 
 /// No pose yet: the next frames have to agree. But a place where the camera was a moment ago is no other place.
@@ -354,7 +274,7 @@ void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Fo
 
 /// The frame is the last tracked one from now on.
 void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking& tracking) {
-  const double gap_s = last_.frame == nullptr ? 0 : frame_gap_s(*last_.frame, *frame);
+  const double gap_s = since_last_s(*frame);
   const bool in_time = (msg::has_pose(state_) || relocalizer_.entered()) && gap_s > 0 && gap_s <= kMaxPredictionGap_s;
   const Eigen::Isometry3d T_last_camera = last_.T_world_camera.inverse() * tracking.guess.T_world_camera;
   const bool continuous = in_time && (!motion_ || is_steady(*motion_, T_last_camera, gap_s));

@@ -119,7 +119,9 @@ class Tracker {
   std::optional<vision::PositionPrior> position_since_last(const Frame& frame) const;
   std::optional<vision::RotationPrior> rotation_since_last(std::int64_t now_ns) const;
   double expected_radius_px(const Frame& frame) const;
+  double since_last_s(const Frame& frame) const;
   bool follows_prior(const Frame& frame) const;
+  bool is_expected(const Frame& frame, const Eigen::Isometry3d& T_world_camera) const;
   bool hidden(const Frame& frame) const;
   bool covered(const Frame& frame) const { return follows_prior(frame) && hidden(frame); }
   void weigh_against_prior(PoseGuess& guess);

@@ -31,6 +31,14 @@ constexpr int kFewestWitnesses = 8;  ///< two points on one edge must not outwei
 /// A pose with which fewer of the witnesses agree is compared with one of which hardly anything else decides.
 constexpr double kMostOfThem = 0.6, kHardlyAny = 0.01, kClearlyMore = 1.25;
 
+/// What a pose is found from, beside observations with their weights.
+struct RgbdPoseProblem {
+  const vision::RgbdProjection& camera;
+  const std::vector<Association>& associations;
+  const Eigen::Isometry3d& T_world_camera_initial;
+  const vision::PoseOptimizerOptions& options;
+};
+
 /// How many agree, and how many there are.
 std::pair<int, int> count_witnesses(const std::vector<Association>& associations, const std::vector<char>& inlier) {
   std::pair<int, int> counts{0, 0};
@@ -40,6 +48,13 @@ std::pair<int, int> count_witnesses(const std::vector<Association>& associations
     ++counts.second;
   }
   return counts;
+}
+
+void weaken_others(const std::vector<Association>& associations, double factor,
+                   std::vector<vision::PoseObservation>& observations) {
+  for (std::size_t i = 0; i < associations.size(); ++i) {
+    if (!associations[i].witness) observations[i].weight *= factor;
+  }
 }
 
 /// Witnesses carry the pose: what is on probation weighs at most a share of them, however much of it there is. Returns
@@ -54,10 +69,23 @@ double weigh_probation(const std::vector<Association>& associations, const Witne
   }
   if (!config.used || witnesses < kFewestWitnesses || of_others <= config.probation_share * of_witnesses) return 1;
   const double factor = config.probation_share * of_witnesses / of_others;
-  for (std::size_t i = 0; i < associations.size(); ++i) {
-    if (!associations[i].witness) observations[i].weight *= factor;
-  }
+  weaken_others(associations, factor, observations);
   return factor;
+}
+
+/// Where most of the witnesses contradict a pose, that by which clearly more of them agree, hardly anything else being
+/// asked, if there is one.
+std::optional<vision::PoseOptimizerResult> prefer_witnesses(const vision::PoseOptimizerResult& found,
+                                                            const RgbdPoseProblem& problem,
+                                                            std::vector<vision::PoseObservation> observations) {
+  const auto [agreeing, witnesses] = count_witnesses(problem.associations, found.inlier);
+  if (witnesses < kFewestWitnesses || agreeing >= kMostOfThem * witnesses) return std::nullopt;
+  weaken_others(problem.associations, kHardlyAny, observations);
+  auto by_them = vision::optimize_pose(problem.camera, observations, problem.T_world_camera_initial, problem.options);
+  const bool better =
+      by_them.success && count_witnesses(problem.associations, by_them.inlier).first > kClearlyMore * agreeing;
+  if (!better) return std::nullopt;
+  return by_them;
 }
 
 PoseGuess optimize(const Frame& frame, const std::vector<Association>& associations,
@@ -72,14 +100,10 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   options.rotation = context.rotation;
   options.position = context.position;
   auto optimized = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
-  const auto [agreeing, witnesses] = count_witnesses(associations, optimized.inlier);
-  if (context.config.witness.used && witnesses >= kFewestWitnesses && agreeing < kMostOfThem * witnesses) {
-    for (std::size_t i = 0; i < associations.size(); ++i) {
-      if (!associations[i].witness) observations[i].weight *= kHardlyAny;
-    }
-    auto by_them = vision::optimize_pose(frame.camera, observations, T_world_camera_initial, options);
-    if (by_them.success && count_witnesses(associations, by_them.inlier).first > kClearlyMore * agreeing) {
-      optimized = std::move(by_them);
+  if (context.config.witness.used) {
+    const RgbdPoseProblem problem{frame.camera, associations, T_world_camera_initial, options};
+    if (auto by_witnesses = prefer_witnesses(optimized, problem, std::move(observations))) {
+      optimized = std::move(*by_witnesses);
       probation_weight *= kHardlyAny;
     }
   }
