@@ -156,7 +156,7 @@ struct ConsistencyConfig {
 /// When a frame becomes a keyframe: docs/theory/tracking.md, "Keyframes".
 struct KeyframeConfig {
   double max_gap_s = 1.0;
-  double min_gap_s = 0;
+  double min_gap_s = 0.1;
   double reference_ratio = 0.9;
   double weak_ratio = 0.25;
   int min_close_tracked = 100;
