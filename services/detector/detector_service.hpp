@@ -19,12 +19,9 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
-#include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/service/runtime.hpp"
-#include "common/service/topic_source.hpp"
 #include "common/vision/detection.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
 #include "services/detector/image_input.hpp"
 #include "services/detector/mask_stage.hpp"
@@ -78,10 +75,6 @@ struct ServiceConfig {
   bool verify_engine = false;
   int workers = 2;
   double max_rate_hz = 0;
-  std::string derotate = "off";
-  double derotate_min_deg = RollConfig{}.min_roll_rad / kRadPerDeg;
-  int roll_timeout_ms = service::kEveryFramePatience.answer_ms;
-  double first_roll_deg = 0, first_pitch_deg = 0;
 
   void bind(auto& binder) {
     service::bind_model(binder, model);
@@ -107,14 +100,6 @@ struct ServiceConfig {
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
     binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit")
         .option("--max-rate");
-    binder.choice("derotate", derotate, {"off", "on"},
-                  "on: detect on the image turned upright by the roll of slam's poses");
-    binder.field("derotate_min_deg", derotate_min_deg, {0.0, 180.0}, "a smaller roll is left as it is");
-    binder.field("roll_timeout_ms", roll_timeout_ms, {1, 60000},
-                 "pace lockstep: longest wait for a living slam's pose of the image before");
-    binder.field("first_roll_deg", first_roll_deg, {-180.0, 180.0},
-                 "roll of the first image: by how much it must be turned clockwise to stand upright");
-    binder.field("first_pitch_deg", first_pitch_deg, {-60.0, 60.0}, "how far the first camera looked down");
   }
 };
 
@@ -169,8 +154,6 @@ class DetectorService {
   void count(double detect_ms);
   bool peers_matched() const;
   void report_state();
-  double roll_for(const Arrival& arrival);
-  bool wait_for_roll(std::int64_t stamp_ns);
   void keep_rate(std::int64_t started_ns) const;
 
   const Config config_;
@@ -181,12 +164,7 @@ class DetectorService {
   std::unique_ptr<MaskStage> masks_;     ///< null: boxes alone
   bus::Writer<msg::Image> mask_writer_;  ///< before the other writer: who reads both is matched here first
   bus::Writer<msg::Detection2DArray> detections_;
-  const std::shared_ptr<bus::SourceGate> slam_;
   std::unique_ptr<ImageInput> input_;
-  std::shared_ptr<RollFeedback> roll_;  ///< null while detector.derotate is off
-  bus::Reader<msg::TrackingResult> tracking_;
-  std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before
-  bool slam_seen_ = false;                     ///< lockstep: its heartbeat
   std::mutex take_mutex_;
   std::uint64_t taken_ = 0;
   std::mutex turn_mutex_;
@@ -197,7 +175,7 @@ class DetectorService {
   std::uint64_t broken_ = 0;
   std::string engine_;  ///< what computes the boxes, for people
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
-  service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};
+  service::RateLimit broken_log_{std::chrono::seconds(1)};
 };
 
 }  // namespace rtd::detector

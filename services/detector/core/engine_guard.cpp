@@ -77,10 +77,10 @@ void EngineGuard::fall_back(const std::string& cause) {
   detector_ = reference_ ? std::move(reference_) : std::make_unique<Detector>(on_cpu_);
 }
 
-std::vector<vision::Detection> EngineGuard::detect_upright(const cv::Mat& color_bgr, double roll_rad) {
-  std::vector<vision::Detection> found = detector_->detect_upright(color_bgr, roll_rad);
+std::vector<vision::Detection> EngineGuard::detect(const cv::Mat& color_bgr) {
+  std::vector<vision::Detection> found = detector_->detect(color_bgr);
   if (!reference_) return found;
-  std::vector<vision::Detection> expected = reference_->detect_upright(color_bgr, roll_rad);
+  std::vector<vision::Detection> expected = reference_->detect(color_bgr);
   return agrees(expected, found) ? found : expected;
 }
 

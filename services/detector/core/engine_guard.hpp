@@ -41,8 +41,8 @@ class EngineGuard {
   /// EngineError only for an engine whose name is wrong.
   EngineGuard(DetectorConfig config, bool verify);
 
-  /// As Detector::detect_upright(), but loads the network again when a disagreement is found.
-  std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
+  /// As Detector::detect(), but loads the network again when a disagreement is found.
+  std::vector<vision::Detection> detect(const cv::Mat& color_bgr);
   /// As Detector::detect_batch(), verified in the same way.
   std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
 

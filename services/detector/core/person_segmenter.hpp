@@ -48,10 +48,9 @@ class PersonSegmenter {
   /// `color_bgr`: 8-bit BGR; empty: no masks.
   /// `fresh_at_most`: so many masks are computed, first of who has none yet, then of who waits longest; others are
   /// those of the last call, moved and scaled with their box. From masks_per_frame on the result depends on this frame
-  /// alone. `roll_rad`: by how much the image must be turned clockwise for people to stand upright (CameraRoll). Throws
-  /// std::invalid_argument for another pixel type; EngineError and cv::Exception when the engine fails.
+  /// alone. Throws std::invalid_argument for another pixel type; EngineError and cv::Exception when the engine fails.
   vision::PersonMasks segment(const cv::Mat& color_bgr, const std::vector<vision::Detection>& detections,
-                              int fresh_at_most, double roll_rad = 0);
+                              int fresh_at_most);
 
   /// What computes the network, for people.
   const std::string& device() const { return engine_->device(); }
@@ -68,7 +67,7 @@ class PersonSegmenter {
 
   std::vector<Mask> largest_people(const std::vector<vision::Detection>& detections) const;
   void take_from_last(Mask& mask) const;
-  void compute(Mask& mask, const cv::Mat& color_bgr, double roll_rad);
+  void compute(Mask& mask, const cv::Mat& color_bgr);
   void label(const Mask& mask, vision::PersonMasks& masks, std::vector<float>& best) const;
 
   MaskConfig config_;

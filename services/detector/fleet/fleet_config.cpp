@@ -28,7 +28,6 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
   };
   refuse(runtime.pace != service::Pace::kRealtime,
          "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
-  refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
   refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
   refuse(config.masks.use == "on", "they get boxes alone: leave detector.masks (--masks) at auto or off");
   refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
@@ -57,7 +56,7 @@ void BatchDetector::try_batches(int most) {
 std::vector<std::vector<vision::Detection>> BatchDetector::detect(std::span<const cv::Mat> images) {
   if (no_batch_.empty()) return guard_.detect_batch(images);
   std::vector<std::vector<vision::Detection>> found;
-  for (const cv::Mat& image : images) found.push_back(guard_.detect_upright(image, 0));
+  for (const cv::Mat& image : images) found.push_back(guard_.detect(image));
   return found;
 }
 

@@ -44,7 +44,7 @@ struct LabelledResults {
 using RecallByRoll = std::map<double, std::map<double, MaskRecall>>;
 struct MaskResult {
   ModelFacts model;
-  RecallByRoll as_seen, upright;          ///< upright: de-rotated by the true roll; empty without --derotate
+  RecallByRoll as_seen;
   std::map<double, MaskOverlap> overlap;  ///< by roll: boxes as seen, lowest confidence; empty without --mask-model
 };
 struct MaskResults {

@@ -65,8 +65,8 @@ ModelUnderTest::ModelUnderTest(const detector::DetectorConfig& config, double le
   facts_.input_height_px = detector_.input_size().height_px;
 }
 
-std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image, double roll_rad) {
-  return detector_.detect_upright(image, roll_rad);
+std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image) {
+  return detector_.detect(image);
 }
 
 void ModelUnderTest::take_time(const cv::Mat& image) {

@@ -172,7 +172,7 @@ TEST_F(EngineTest, the_guard_continues_with_the_cpu) {
   EXPECT_EQ(guard.detector().device(), "CPU (OpenCV DNN)");
   cv::Mat image = cv::Mat::zeros(64, 64, CV_8UC3);
   image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255));
-  EXPECT_THAT(guard.detect_upright(image, 0), Not(IsEmpty()));
+  EXPECT_THAT(guard.detect(image), Not(IsEmpty()));
   config_.engine = "gpu";
   EXPECT_THROW(EngineGuard(config_, false), EngineError) << "a wrong name is the user's";
 }
@@ -265,7 +265,7 @@ TEST_P(EachEngine, is_verified_with_ten_images) {
   EngineGuard guard(config_, true);
   cv::Mat image = cv::Mat::zeros(64, 64, CV_8UC3);
   image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255));
-  for (int i = 0; i < 12; ++i) EXPECT_THAT(guard.detect_upright(image, 0), Not(IsEmpty()));
+  for (int i = 0; i < 12; ++i) EXPECT_THAT(guard.detect(image), Not(IsEmpty()));
   EXPECT_EQ(guard.verified(), EngineGuard::kVerifiedImages);
   EXPECT_THAT(guard.fallback(), IsEmpty());
 }

@@ -142,7 +142,6 @@ TEST_F(FleetProcess, the_second_one_takes_over_within_two_seconds_when_the_first
 TEST_F(FleetProcess, refuses_what_is_for_one_robot) {
   expect_refused({"--pace", "asap"}, "several robots are served at pace realtime");
   expect_refused({"--pace", "lockstep"}, "several robots are served at pace realtime");
-  expect_refused({"--set", "detector.derotate=on"}, "detector.derotate follows the poses of one robot");
   expect_refused({"--input", "frame"}, "raw frames never leave their host");
   expect_refused({"--max-rate", "5"}, "detector.max_rate_hz (--max-rate) is for one robot");
   expect_refused({"--robot", "anna"}, "--robot names the one robot of a detector");

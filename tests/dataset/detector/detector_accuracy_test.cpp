@@ -12,7 +12,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
@@ -49,8 +48,8 @@ class DetectorQuality : public ::testing::Test {
     config_.engine = "cpu";
     config_.decode.confidence_threshold = kPersonConfidence;
   }
-  static std::vector<vision::Detection> people(Detector& detector, const cv::Mat& image, double roll_rad = 0) {
-    std::vector<vision::Detection> boxes = detector.detect_upright(image, roll_rad);
+  static std::vector<vision::Detection> people(Detector& detector, const cv::Mat& image) {
+    std::vector<vision::Detection> boxes = detector.detect(image);
     std::erase_if(boxes, [](const vision::Detection& box) { return box.class_name != "person"; });
     return boxes;
   }
@@ -62,21 +61,6 @@ class DetectorQuality : public ::testing::Test {
     for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += step) {
       const cv::Mat mask = cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE);
       recall += eval::measure_mask_recall(mask, people(detector, cv::imread(images[i].string())));
-    }
-    return recall;
-  }
-
-  /// The same for walk_xyz turned about its centre, detected as seen or turned back before.
-  eval::MaskRecall rolled_recall(Detector& detector, double roll_deg, double turned_back_deg) {
-    const fs::path clip = data_ / "walk_xyz";
-    const std::vector<fs::path> images = files_in(clip / "rgb"), masks = files_in(clip / "mask");
-    const cv::Mat turn = cv::getRotationMatrix2D({319.5F, 239.5F}, roll_deg, 1.0);
-    eval::MaskRecall recall;
-    for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += 20) {
-      cv::Mat image, mask;
-      cv::warpAffine(cv::imread(images[i].string()), image, turn, {640, 480});
-      cv::warpAffine(cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE), mask, turn, {640, 480}, cv::INTER_NEAREST);
-      recall += eval::measure_mask_recall(mask, people(detector, image, turned_back_deg * kRadPerDeg));
     }
     return recall;
   }
@@ -118,18 +102,6 @@ TEST_F(DetectorQuality, covers_the_people_who_walk_through_the_clips) {
     const double recall = dynamic_pixel_recall(clip, 10).pixel_recall();
     EXPECT_GE(recall, 0.97) << clip;  // measured: 0.995 and 0.990 over all frames
   }
-}
-
-TEST_F(DetectorQuality, finds_people_at_any_roll_when_it_is_given) {
-  if (!fs::is_directory(data_ / "walk_xyz/mask")) GTEST_SKIP() << "no walk_xyz in RTD_DATA_DIR";
-  Detector detector(config_);
-  for (const double roll_deg : {60.0, 105.0, 180.0}) {
-    const double upright = rolled_recall(detector, roll_deg, roll_deg).pixel_recall();
-    std::cout << "roll " << roll_deg << ": as seen " << rolled_recall(detector, roll_deg, 0).pixel_recall()
-              << ", upright " << upright << '\n';
-    EXPECT_GE(upright, 0.85) << roll_deg;  // measured: 0.97, 0.89, 0.98
-  }
-  EXPECT_LE(rolled_recall(detector, 105, 0).pixel_recall(), 0.8);  // measured: 0.00; else turning is not needed
 }
 
 TEST_F(DetectorQuality, reaches_its_average_precision_on_coco) {
