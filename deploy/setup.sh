@@ -53,7 +53,6 @@ test_packages=(
   fastddsgen default-jre-headless cyclonedds-tools
   libgtest-dev libgmock-dev libbenchmark-dev
   python3-opencv python3-rosbag python3-sensor-msgs
-  pocl-opencl-icd
   python3-websockets
   iproute2 nftables
   ament-cmake rosidl-cmake rosidl-generator-c-cpp python3-yaml

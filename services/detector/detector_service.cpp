@@ -63,7 +63,7 @@ auto load_network(auto load) {
 std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& config, service::Pace pace) {
   std::vector<std::unique_ptr<EngineGuard>> detectors;
   const int count = pace == service::Pace::kAsap ? config.workers : 1;
-  const auto load = [&] { return std::make_unique<EngineGuard>(core_config(config), config.verify_engine); };
+  const auto load = [&] { return std::make_unique<EngineGuard>(core_config(config)); };
   for (int i = 0; i < count; ++i) detectors.push_back(load_network(load));
   return detectors;
 }
@@ -76,7 +76,6 @@ DetectorConfig core_config(const ServiceConfig& config) {
   if (!model) throw service::ConfigError(model.message);
   DetectorConfig core = config.core;
   core.model_path = model.path;
-  core.kernel_cache = service::kernel_cache_folder(environment);
   core.onnxruntime = service::find_onnxruntime();
   return core;
 }
@@ -90,7 +89,6 @@ MaskConfig mask_config(const ServiceConfig& config) {
   masks.model_path = model.path;
   masks.engine = config.core.engine;
   masks.onnxruntime = service::find_onnxruntime();
-  masks.kernel_cache = service::kernel_cache_folder(environment);
   masks.threads = config.core.threads;
   return masks;
 }

@@ -32,16 +32,14 @@ class App;
 
 namespace rtd::detector {
 
-/// Logs what happens to the engine: that it was verified, why the CPU takes its place, that the memory of its device
-/// holds fewer images. Each of these once, also when several guards report. Not thread-safe.
+/// Logs what happens to the engine: why the CPU takes its place, that the memory of its device holds fewer images. Each
+/// of these once, also when several guards report. Not thread-safe.
 class EngineLog {
  public:
   explicit EngineLog(std::string asked) : asked_(std::move(asked)) {}
 
   void report(const EngineGuard& guard) {
     const std::string& device = guard.detector().device();
-    if (guard.verified() == EngineGuard::kVerifiedImages && !std::exchange(verified_, true))
-      SPDLOG_INFO("event=engine_verified images={} device=\"{}\"", guard.verified(), device);
     const std::string before = std::exchange(device_, device);
     const bool fell_back = !guard.fallback().empty();
     if (fell_back && guard.fallback() != fallback_) {
@@ -55,7 +53,6 @@ class EngineLog {
  private:
   const std::string asked_;
   std::string device_, fallback_;
-  bool verified_ = false;
 };
 
 /// vision_msgs: box centre and size in px, class_id = class name, header.stamp = stamp of the image.
@@ -72,7 +69,6 @@ struct ServiceConfig {
   DetectorConfig core;
   service::MaskSettings masks;
   MaskConfig mask_core;
-  bool verify_engine = false;
   int workers = 2;
   double max_rate_hz = 0;
 
@@ -93,18 +89,13 @@ struct ServiceConfig {
     service::bind_engine(binder, core.engine);
     masks.bind(binder);
     mask_core.bind(binder);
-    binder
-        .field("verify_engine", verify_engine,
-               "compare the first ten images with the CPU, and continue with the CPU if they differ")
-        .option("--verify-engine");
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
     binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit")
         .option("--max-rate");
   }
 };
 
-/// The part of the configuration for the network, with the file found and the folder for compiled kernels. Throws
-/// ConfigError without weights.
+/// The part of the configuration for the network, with the file found. Throws ConfigError without weights.
 DetectorConfig core_config(const ServiceConfig& config);
 /// The part for person masks; without a path there are none. Throws ConfigError when they are asked for and their
 /// network is not found.

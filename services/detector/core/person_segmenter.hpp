@@ -20,7 +20,6 @@ struct MaskConfig {
   std::string model_path;       ///< ONNX file: N x 3 x H x W, RGB, 0 to 1, to N x 1 x H x W, probability of a person
   std::string engine = "auto";  ///< parse_engine(), as the detector's
   std::string onnxruntime;      ///< library that "auto" may load; empty: none
-  std::string kernel_cache;     ///< folder for what an OpenCL driver compiles; empty: none
   int threads = 1;              ///< CPU threads of ONNX Runtime; OpenCV's are set by the Detector
   int masks_per_frame = 4;
   double threshold = 0.5;

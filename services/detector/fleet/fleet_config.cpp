@@ -36,7 +36,7 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
 
 }  // namespace
 
-BatchDetector::BatchDetector(DetectorConfig config, int batch, bool verify) : guard_(std::move(config), verify) {
+BatchDetector::BatchDetector(DetectorConfig config, int batch) : guard_(std::move(config)) {
   if (batch > 1) try_batches(batch);
 }
 
@@ -92,7 +92,7 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
 
 Inference load_inference(const ServiceConfig& config) {
   try {
-    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch, config.verify_engine);
+    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
     const Detector& loaded = detector->guard().detector();
     const InputSize input = loaded.input_size();
     SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"", loaded.config().model_path,

@@ -263,9 +263,10 @@ TEST_F(DetectorServiceTest, masks_that_are_asked_for_need_their_network) {
 }
 
 TEST_F(DetectorServiceTest, continues_with_the_cpu_and_names_the_device_in_its_status) {
-  config_.core.engine = "opencl:no such device";
+  config_.core.engine = "onnxruntime:/nowhere.so";
   start(service::Pace::kLockstep);
-  EXPECT_TRUE(wait_state(msg::ServiceState::kReady, "computes on CPU (OpenCV DNN) in place of opencl:no such device"));
+  EXPECT_TRUE(
+      wait_state(msg::ServiceState::kReady, "computes on CPU (OpenCV DNN) in place of onnxruntime:/nowhere.so"));
   send_frame(1, true);
   ASSERT_TRUE(answer_box_.wait_count(1));
   EXPECT_THAT(answer_box_.all()[0]->detections, SizeIs(1));

@@ -148,51 +148,28 @@ TEST_P(PermissiveQuality, reaches_its_average_precision_on_coco) {
   EXPECT_GE(report.ap50, GetParam().ap50);                  // measured: YOLOX-nano 0.506, NanoDet-g 0.439
 }
 
-/// An engine, and the network that it computes here in a minute: pocl takes minutes for the default one.
-struct EngineTrial {
-  const char* engine;
-  const char* model;
-  bool (*available)();
-  const char* needs;
-};
-
-constexpr const char* kNeedsOnnxruntime = "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
-
-bool onnxruntime_is_there() {
-  return knows_onnxruntime() && fs::exists(ONNXRUNTIME_LIBRARY);
-}
-
-class EngineQuality : public DetectorQuality, public ::testing::WithParamInterface<EngineTrial> {
+/// ONNX Runtime with each network.
+class EngineQuality : public DetectorQuality, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
     DetectorQuality::SetUp();
     if (IsSkipped()) return;
     if (!fs::is_directory(data_ / "coco_val128/images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
-    if (!GetParam().available()) GTEST_SKIP() << GetParam().needs;
-    const service::ModelSearch model = service::find_model(GetParam().model, service::process_environment());
+    if (!knows_onnxruntime() || !fs::exists(ONNXRUNTIME_LIBRARY))
+      GTEST_SKIP() << "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
+    const service::ModelSearch model = service::find_model(GetParam(), service::process_environment());
     if (!model) GTEST_SKIP() << model.message;
     config_.model_path = model.path;
     config_.decode.confidence_threshold = config_.decode.objectness_threshold = 0.001;
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Engines, EngineQuality,
-                         ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx",
-                                                       [] { return !opencl_devices().empty(); },
-                                                       "needs an OpenCL device: apt-get install pocl-opencl-icd"},
-                                           EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "v5lite-s-raw-480x640.onnx",
-                                                       &onnxruntime_is_there, kNeedsOnnxruntime},
-                                           EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "yolox_nano.onnx",
-                                                       &onnxruntime_is_there, kNeedsOnnxruntime}),
-                         [](const auto& trial) {
-                           const std::string engine = trial.param.engine;
-                           return engine.substr(0, engine.find(':')) + "_" +
-                                  std::string(trial.param.model).substr(0, 5);
-                         });
+INSTANTIATE_TEST_SUITE_P(Onnxruntime, EngineQuality, ::testing::Values("v5lite-s-raw-480x640.onnx", "yolox_nano.onnx"),
+                         [](const auto& trial) { return std::string(trial.param).substr(0, 5); });
 
 TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
   Detector cpu(config_);
-  config_.engine = GetParam().engine;
+  config_.engine = "onnxruntime:" ONNXRUNTIME_LIBRARY;
   Detector compared(config_);
   ASSERT_NE(compared.device(), cpu.device());
   const auto evaluated = detect_on_coco({&cpu, &compared});
