@@ -12,7 +12,6 @@
 
 #include "services/detector/core/engine_guard.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
-#include "services/evaluation/core/detection/mask_overlap.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"
 
