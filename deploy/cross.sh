@@ -27,7 +27,7 @@ TEXT
 # OpenCV for Python is not to be had beside the libraries of arm64: what needs it is skipped.
 packages_for() {
   local package
-  inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-(opencv|rosbag|sensor-msgs)|pocl-|nftables|iproute2|fastdds-tools)' |
+  inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-(opencv|rosbag|sensor-msgs)|nftables|iproute2|fastdds-tools)' |
     while read -r package; do
       if [[ "$package" == *-dev ]] &&
         ! inside "$place" apt-cache show --no-all-versions "$package" | grep -q '^Architecture: all$'; then

@@ -34,7 +34,7 @@ class ServesBoth : public BusBackend {
   explicit ServesBoth(const BusOptions& options)
       : BusBackend(options.vendor), own_(cyclonedds::create_backend(options, node_)), options_(options) {
     options_.vendor = "fastdds";
-    options_.shared_memory = options_.iceoryx = false;
+    options_.shared_memory = false;
     options_.ros_graph = "off";  // own_ announces the node of both
   }
   std::unique_ptr<WriterBackend> create_writer(MessageId id, const std::string& topic, QosProfile profile,
@@ -102,10 +102,6 @@ const Vendor& vendor_of(const BusOptions& options) {
     if (options.security.enabled() && !vendor.secures)
       throw BusError("bus '" + options.vendor +
                      "' knows no DDS-Security: leave --secure out or choose another (--dds)");
-    if (options.iceoryx && options.vendor != "cyclonedds") {
-      throw BusError("bus.iceoryx is a way of Cyclone DDS: add --dds cyclonedds, or leave it out (" + options.vendor +
-                     " needs no daemon for its shared memory)");
-    }
     if (options.vendor == "inprocess") return vendor;
     if (options.network.multicast) require_discovery_port(options.domain);
     if (takes_participant_port(options)) require_participant_port(options.domain);

@@ -73,7 +73,6 @@ struct BusOptions {
   std::string ros_graph = "auto";  ///< auto counts as iron; common/service asks ROS_DISTRO before
   NetworkOptions network;
   SecurityOptions security;
-  bool iceoryx = false;
   std::vector<EnvironmentSetting> environment;  ///< for messages: what it says is in the options already
   /// Called with one line for each problem that keeps other participants from being matched, e.g. a participant of
   /// another vendor in a secured domain. Runs on a bus thread, maybe several times: be brief, do not call the bus.
@@ -92,7 +91,6 @@ struct BusOptions {
     binder.field("socket_buffer_kib", socket_buffer_kib, {64, 65536}, "wanted UDP buffers, capped by the kernel");
     binder.choice("ros_graph", ros_graph, {"auto", "iron", "humble", "off"},
                   "form of the nodes for ROS 2: Iron and later, or up to Humble; auto: by ROS_DISTRO, else iron");
-    binder.field("iceoryx", iceoryx, "Cyclone DDS: frames and features through a running iox-roudi");
     binder.section("network", network);
   }
 };

@@ -158,7 +158,7 @@ class CommandClient::State {
   const Clock::time_point start_ = Clock::now();
   const std::shared_ptr<RawBus> bus_;
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<RawBus>> others_;  ///< by vendor
+  std::map<std::string, std::shared_ptr<RawBus>> others_;         ///< by vendor
   std::map<std::string, std::shared_ptr<CallChannel>> channels_;  ///< by vendor, type and name
 };
 
@@ -191,7 +191,6 @@ std::shared_ptr<RawBus> CommandClient::State::bus_of(const std::string& vendor) 
   if (other) return other;
   BusOptions options = options_;
   options.vendor = vendor;
-  options.iceoryx = false;
   return other = connect_raw(options);
 }
 

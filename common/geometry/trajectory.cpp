@@ -10,7 +10,6 @@
 #include <fstream>
 #include <functional>
 #include <queue>
-#include <sstream>
 #include <tuple>
 
 #include "common/geometry/pose_list.hpp"
@@ -23,60 +22,14 @@
 namespace rtd::geometry {
 namespace {
 
-constexpr std::size_t kColumns = 8;
 constexpr double kMaxQuaternionError = 0.05;  // of the length; TUM's own ground truth comes near it
 
 [[noreturn]] void fail(const std::string& name, int line, const std::string& cause) {
   throw TrajectoryError(name + ":" + std::to_string(line) + ": " + cause);
 }
 
-double parse_finite(const std::string& text) {
-  const std::optional<double> value = io::parse_number(text);
-  if (!value) throw std::invalid_argument("'" + io::abridged(text) + "' is not a number");
-  if (!std::isfinite(*value)) {
-    throw std::invalid_argument("'" + io::abridged(text) + "' is not a finite number; leave such rows out");
-  }
-  return *value;
-}
-
-Eigen::Isometry3d parse_pose(const std::vector<std::string>& columns, double quaternion_tolerance) {
-  std::array<double, kColumns - 1> v{};
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = parse_finite(columns[i + 1]);
-  const Eigen::Quaterniond rotation(v[6], v[3], v[4], v[5]);
-  if (std::abs(rotation.norm() - 1) > quaternion_tolerance) {
-    throw std::invalid_argument("quaternion has length " + std::to_string(rotation.norm()) +
-                                " instead of 1 (columns are: stamp tx ty tz qx qy qz qw)");
-  }
-  return make_pose({v[0], v[1], v[2]}, rotation);
-}
-
-StampedPose parse_row(const std::vector<std::string>& columns, TumRows rows) {
-  if (columns.size() != kColumns) {
-    throw std::invalid_argument(std::to_string(columns.size()) + " columns instead of 8 (stamp tx ty tz qx qy qz qw)");
-  }
-  return {io::parse_stamp_ns(columns[0]), parse_pose(columns, rows == TumRows::kAsWritten ? 0.05 : 0.01)};
-}
-
 std::vector<io::TextLine> lines_of(std::string_view text) {
   return io::split_lines(text, " \t\r,;");
-}
-
-Trajectory trajectory_in(std::string_view text, const std::string& name, TumRows rows) {
-  Trajectory trajectory;
-  for (const io::TextLine& line : lines_of(text)) {
-    try {
-      const StampedPose pose = parse_row(line.fields, rows);
-      if (rows == TumRows::kIncreasing) {
-        append_in_order(trajectory, pose);
-      } else {
-        trajectory.push_back(pose);
-      }
-    } catch (const std::invalid_argument& error) {
-      fail(name, line.number, error.what());
-    }
-  }
-  if (trajectory.empty() && rows == TumRows::kIncreasing) throw TrajectoryError(name + ": holds no poses");
-  return trajectory;
 }
 
 /// Stamps of both sides in one line by their time. The pair that is closest of all stands side by side in it; when it
@@ -212,16 +165,6 @@ std::string read_poses_text(const std::filesystem::path& path) {
   } catch (const io::IoError& error) {
     throw TrajectoryError(error.what());
   }
-}
-
-Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows) {
-  std::ostringstream text;
-  if (input.peek() != std::istream::traits_type::eof()) text << input.rdbuf();
-  return trajectory_in(text.view(), name, rows);
-}
-
-Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows) {
-  return trajectory_in(read_poses_text(path), path.string(), rows);
 }
 
 std::vector<std::int64_t> read_frame_stamps(const std::filesystem::path& path) {

@@ -62,20 +62,6 @@ void append_in_order(Trajectory& trajectory, const StampedPose& pose);
 /// The parts in which stamps never go back, in their order: a recording that is played twice gives two. At least one.
 std::vector<Trajectory> split_where_time_goes_back(const Trajectory& poses);
 
-/// What a reader makes of the rows of a trajectory.
-enum class TumRows {
-  kIncreasing,  ///< a repeated stamp replaces the row before it, as in TUM's tools; going back or no row is an error
-  kAsWritten,   ///< all rows in the order of the file; quaternions may be 5 % too long or short instead of 1 %
-};
-
-/// Reads TUM's format, one pose per line: `stamp_s tx ty tz qx qy qz qw`, separated by blanks or commas; `#` starts a
-/// comment. Quaternions are normalised. Throws TrajectoryError: no file, wrong number of columns, not a finite number,
-/// quaternion not of unit length, and what `rows` excludes.
-Trajectory read_tum_trajectory(const std::filesystem::path& path, TumRows rows = TumRows::kIncreasing);
-
-/// As above from a stream; `name` stands for the file in messages.
-Trajectory read_tum_trajectory(std::istream& input, const std::string& name, TumRows rows = TumRows::kIncreasing);
-
 /// The text of a file with poses; /dev/stdin and the shell's <(...) may be pipes. Throws TrajectoryError.
 std::string read_poses_text(const std::filesystem::path& path);
 

@@ -6,7 +6,6 @@ namespace rtd::msg {
 
 /// The engines of the detector, as they are written on a command line: for help and error messages.
 inline constexpr const char* kEngineNames =
-    "cpu, opencl[:DEVICE], onnxruntime:LIBRARY[@DEVICE] or auto (ONNX Runtime if it is there, else OpenCL on a GPU, "
-    "else the CPU)";
+    "cpu, onnxruntime:LIBRARY[@DEVICE] or auto (ONNX Runtime if it is there, else cpu)";
 
 }  // namespace rtd::msg

@@ -13,12 +13,10 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <sstream>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "common/io/printable.hpp"
@@ -125,14 +123,6 @@ int run_command(CLI::App& app, int argc, const char* const* argv, const std::fun
     return app.exit(error) == 0 ? kOk : kUsageOrConfig;
   }
   return work();
-}
-
-void restart_with(const char* variable, const char* value, char** argv) {
-  if (std::getenv(variable) != nullptr) return;
-  setenv(variable, value, 0);
-  std::error_code error;  // by its own path: the name in /proc/PID/comm, ps and top is that of the file
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  execv(error ? "/proc/self/exe" : program.c_str(), argv);
 }
 
 InterruptSignals::InterruptSignals() {

@@ -31,10 +31,6 @@ int run_command(CLI::App& app, int argc, const char* const* argv, const std::fun
 /// Gives the help of `app` lines of at most 100 characters. Call it before subcommands are added.
 void wrap_help(CLI::App& app);
 
-/// Starts this program again with an environment variable that a library reads while it is loaded, before main(). Does
-/// nothing when the variable is set. Returns without it when the program cannot be started again.
-void restart_with(const char* variable, const char* value, char** argv);
-
 /// Returns the exit code of `work`. What it throws becomes a line on `err` and exit code 2 for an error of one of the
 /// types `Usage`, else 1.
 template <class... Usage>

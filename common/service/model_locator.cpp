@@ -114,12 +114,6 @@ ModelSearch find_mask_model(const std::string& use, const std::string& configure
   return found;
 }
 
-std::string kernel_cache_folder(const EnvironmentReader& environment) {
-  if (const auto cache = environment("XDG_CACHE_HOME"); cache && !cache->empty()) return *cache + "/rtd-slam/opencl";
-  const auto home = environment("HOME");
-  return home && !home->empty() ? *home + "/.cache/rtd-slam/opencl" : std::string();
-}
-
 std::string state_folder(const EnvironmentReader& environment) {
   const std::string folders = environment("STATE_DIRECTORY").value_or("");
   return folders.substr(0, folders.find(':'));  // of several the first

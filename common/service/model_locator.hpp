@@ -30,9 +30,6 @@ ModelSearch find_model(const std::string& configured, const EnvironmentReader& e
 ModelSearch find_mask_model(const std::string& use, const std::string& configured,
                             const EnvironmentReader& environment);
 
-/// The folder of the user's cache for what OpenCL compiles for a device; empty without XDG_CACHE_HOME and HOME.
-std::string kernel_cache_folder(const EnvironmentReader& environment);
-
 /// The folder of a service's data as systemd gives it (StateDirectory=); empty without STATE_DIRECTORY.
 std::string state_folder(const EnvironmentReader& environment);
 

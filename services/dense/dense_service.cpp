@@ -108,7 +108,6 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
       map_(config.core),
-      background_(config.core.fusion, static_cast<std::size_t>(config.background_views)),
       navigation_(make_navigation(config.grid)),
       joiner_(std::make_shared<FrameJoiner>(
           FrameJoiner::Options{static_cast<std::uint64_t>(config.every), !config.without_masks})),
@@ -130,10 +129,7 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
       },
       filter_->callbacks());
   frame_reader_ = bus::FrameReader(
-      runtime.bus,
-      [this](std::shared_ptr<const msg::FrameView> frame) {
-        joiner_->put(std::move(frame));
-      },
+      runtime.bus, [this](std::shared_ptr<const msg::FrameView> frame) { joiner_->put(std::move(frame)); },
       camera_->callbacks());
 }
 
@@ -176,7 +172,6 @@ void DenseService::integrate(const JoinedFrame& joined) {
   }
   if (navigation_) navigation_->integrate(image, T_world_camera);
   grid_stale_ = true;
-  if (config_.background) background_.remember(image, mask, T_world_camera, map_.keyframes());
   newest_stamp_ns_ = joined.result.stamp_ns;
   count(report);
 }
@@ -186,7 +181,6 @@ void DenseService::update(const std::vector<KeyframeUpdate>& updates) {
     if (update.new_map) {
       SPDLOG_WARN("event=map_restarted voxels_forgotten={} cause=\"slam was restarted\"", map_.voxels());
       map_.clear();
-      background_.clear();
       if (navigation_) navigation_->clear();
     }
     map_.update(update.event);
@@ -318,9 +312,8 @@ service::ExitCode DenseService::write_files() {
   const std::filesystem::path folder = config_.out_dir;
   std::error_code ignored;  // an existing folder is fine, an impossible one shows when the files are written
   std::filesystem::create_directories(folder, ignored);
-  const bool written = write_cloud((folder / "static_map.ply").string()) &&
-                       (!config_.background || write_background((folder / "background.png").string())) &&
-                       (!navigation_ || write_navigation_maps(folder.string()));
+  const bool written =
+      write_cloud((folder / "static_map.ply").string()) && (!navigation_ || write_navigation_maps(folder.string()));
   return written ? service::kOk : service::kRunFailed;
 }
 
@@ -328,15 +321,6 @@ bool DenseService::write_cloud(const std::string& path) {
   const std::vector<CloudPoint> points = map_.cloud();
   return report_file(path, fmt::format("points={}", points.size()),
                      [&] { io::write_file(path, [&](std::ostream& file) { write_ply(file, points); }); });
-}
-
-/// Nothing is written when no frame was fused.
-bool DenseService::write_background(const std::string& path) {
-  const cv::Mat picture = background_.paint(map_);
-  if (picture.empty()) return true;
-  return report_file(path, fmt::format("views={}", background_.views()), [&] {
-    if (!vision::write_image(path, picture)) throw std::runtime_error("the picture cannot be encoded");
-  });
 }
 
 /// No plan is written as long as the floor is unknown, and nothing when no frame was fused.
@@ -350,9 +334,9 @@ bool DenseService::write_navigation_maps(const std::string& folder) {
   };
   const std::string left_out = occupancy::octomap_left_out();
   if (!left_out.empty()) SPDLOG_WARN("event=file_left_out path={}/map.bt cause=\"{}\"", folder, left_out);
-  bool written = !left_out.empty() ||
-                 write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
-                       [&](std::ostream& file) { write_octomap(file, volume); });
+  bool written =
+      !left_out.empty() || write("map.bt", fmt::format("cell_m={} blocks={}", volume.cell_m, volume.cells.blocks()),
+                                 [&](std::ostream& file) { write_octomap(file, volume); });
   const std::optional<NavigationGrid> grid = navigation_->grid(volume);
   if (!grid || grid->cells.empty()) {
     SPDLOG_WARN("event=no_floor_plan cause=\"no floor was seen\" fix=\"dense.grid.find_floor, dense.grid.floor_m\"");

@@ -15,7 +15,6 @@
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
-#include "services/dense/core/background.hpp"
 #include "services/dense/core/dense_config.hpp"
 #include "services/dense/core/depth_view.hpp"
 #include "services/dense/core/navigation_map.hpp"
@@ -61,8 +60,6 @@ struct ServiceConfig {
   std::string out_dir;
   int every = 5;
   bool without_masks = false;
-  bool background = false;
-  int background_views = 24;
   std::string map_frame = "map";
   int publish_period_ms = 1000;
   int publish_max_points = 200000;
@@ -78,9 +75,6 @@ struct ServiceConfig {
     binder.field("every", every, {1, 10000}, "one frame in so many is fused, and each keyframe");
     binder.field("without_masks", without_masks,
                  "also fuse frames without a mask from the filter: moving objects leave ghosts");
-    binder.field("background", background, "also write background.png: the last frame without moving objects")
-        .option("--background");
-    binder.field("background_views", background_views, {1, 500}, "earlier frames kept for it, 1.6 MB each");
     binder.field("map_frame", map_frame, "frame of the published cloud");
     binder.field("publish_period_ms", publish_period_ms, {100, 600'000}, "between two clouds on rt/dense/points");
     binder.field("publish_max_points", publish_max_points, {100, 500'000},
@@ -93,7 +87,7 @@ struct ServiceConfig {
 };
 
 /// Images, the filter's masks and slam's poses in, a dense static cloud out. No other service ever waits for
-/// it; frames that it has no time for are counted. Writes static_map.ply (and background.png) when it is asked to stop,
+/// it; frames that it has no time for are counted. Writes static_map.ply when it is asked to stop,
 /// and the maps for navigation.
 class DenseService {
  public:
@@ -120,13 +114,11 @@ class DenseService {
   void report_state();
   service::ExitCode write_files();
   bool write_cloud(const std::string& path);
-  bool write_background(const std::string& path);
   bool write_navigation_maps(const std::string& folder);
 
   const Config config_;
   service::Runtime& runtime_;
   StaticMap map_;
-  BackgroundPainter background_;
   std::optional<NavigationMap> navigation_;
   std::shared_ptr<FrameJoiner> joiner_;
   bus::Writer<msg::PointCloud2> cloud_writer_;

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "common/msg/engine_names.hpp"
-#include "common/msg/transform_eigen.hpp"
 #include "common/service/camera_frame.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
@@ -47,20 +46,7 @@ msg::Detection2DArray to_message(const std::vector<vision::Detection>& detection
 namespace {
 
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
-constexpr std::chrono::milliseconds kLookAtSlam{100};
-constexpr std::int64_t kSlamPatienceNs = 1'500'000'000;  // for the successor of one that is gone
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
-
-std::optional<Eigen::Isometry3d> pose_of(const msg::TrackingResult& result) {
-  if (!msg::has_pose(result.state)) return std::nullopt;
-  return msg::to_isometry(result.T_world_camera);
-}
-
-/// Where down is for the camera's roll.
-RollConfig roll_config(const ServiceConfig& config) {
-  return {down_of_first_camera(config.first_roll_deg * kRadPerDeg, config.first_pitch_deg * kRadPerDeg),
-          config.derotate_min_deg * kRadPerDeg};
-}
 
 /// `load()`, with what is wrong about a network as an error of the configuration.
 auto load_network(auto load) {
@@ -77,7 +63,7 @@ auto load_network(auto load) {
 std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& config, service::Pace pace) {
   std::vector<std::unique_ptr<EngineGuard>> detectors;
   const int count = pace == service::Pace::kAsap ? config.workers : 1;
-  const auto load = [&] { return std::make_unique<EngineGuard>(core_config(config), config.verify_engine); };
+  const auto load = [&] { return std::make_unique<EngineGuard>(core_config(config)); };
   for (int i = 0; i < count; ++i) detectors.push_back(load_network(load));
   return detectors;
 }
@@ -90,7 +76,6 @@ DetectorConfig core_config(const ServiceConfig& config) {
   if (!model) throw service::ConfigError(model.message);
   DetectorConfig core = config.core;
   core.model_path = model.path;
-  core.kernel_cache = service::kernel_cache_folder(environment);
   core.onnxruntime = service::find_onnxruntime();
   return core;
 }
@@ -104,7 +89,6 @@ MaskConfig mask_config(const ServiceConfig& config) {
   masks.model_path = model.path;
   masks.engine = config.core.engine;
   masks.onnxruntime = service::find_onnxruntime();
-  masks.kernel_cache = service::kernel_cache_folder(environment);
   masks.threads = config.core.threads;
   return masks;
 }
@@ -120,24 +104,13 @@ DetectorService::DetectorService(const Config& config, service::Runtime& runtime
       engine_log_(config.core.engine),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(1, concurrency::Overflow::kDropOldest)
-                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),
-      slam_(service::follow_source("slam", runtime.heartbeat.process_gone())) {
+                    : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)) {
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   load_masks();
   input_ = std::make_unique<ImageInput>(runtime, config_.input, [this](Arrival arrival) {
     if (masks_) masks_->saw_image(arrival.stamp_ns);
     arrivals_->push(std::move(arrival));
   });
-  if (config_.derotate == "on") {
-    roll_ = std::make_shared<RollFeedback>(roll_config(config_));
-    runtime_.stop.on_stop([roll = roll_] { roll->close(); });
-    tracking_ = runtime.bus.reader<msg::TrackingResult>(
-        bus::topics::kTracking,
-        [roll = roll_](std::shared_ptr<const msg::TrackingResult> result) {
-          roll->put(result->stamp_ns, pose_of(*result));
-        },
-        slam_->callbacks());
-  }
   const Detector& detector = detectors_.front()->detector();
   SPDLOG_INFO("event=model_loaded file={} weights=\"{}\" input={}x{} threads={} workers={} device=\"{}\"",
               detector.config().model_path, service::describe_model(detector.config().model_path),
@@ -232,12 +205,11 @@ std::optional<DetectorService::Found> DetectorService::detect(std::size_t worker
   EngineGuard& detector = *detectors_[worker];
   try {
     if (const std::optional<cv::Mat> image = image_of(arrival)) {
-      const double roll_rad = roll_for(arrival);
-      const auto boxes = detector.detect_upright(*image, roll_rad);
+      const auto boxes = detector.detect(*image);
       const double boxes_ms = static_cast<double>(service::monotonic_ns() - started_ns) / kNsPerMs;
       Found found{to_message(boxes, arrival.stamp_ns, service::camera_frame(runtime_.heartbeat, runtime_.bus)),
                   std::nullopt};
-      found.masks = find_masks(worker, {*image, boxes, roll_rad, boxes_ms}, found.detections.header);
+      found.masks = find_masks(worker, {*image, boxes, boxes_ms}, found.detections.header);
       report_engine(detector);
       count(boxes_ms);
       return found;
@@ -254,35 +226,6 @@ std::optional<msg::Image> DetectorService::find_masks(std::size_t worker, const 
                                                       const msg::Header& header) {
   if (!masks_ || mask_writer_.matched() == 0) return std::nullopt;
   return to_message(masks_->segment(worker, boxed), boxed.color_bgr.size(), header);
-}
-
-/// Lockstep: the roll after the image before, for which slam's result is waited: same input, same boxes. Otherwise the
-/// roll of the newest pose, as in the filter.
-double DetectorService::roll_for(const Arrival& arrival) {
-  if (!roll_) return 0;
-  if (runtime_.pace == service::Pace::kLockstep) {
-    const std::optional<std::int64_t> before_ns = std::exchange(last_stamp_ns_, arrival.stamp_ns);
-    const bool later = before_ns && *before_ns < arrival.stamp_ns;
-    if (later && !wait_for_roll(*before_ns) && !runtime_.stop.stop_requested() && roll_log_.pass())
-      SPDLOG_WARN("event=roll_unknown stamp_ns={} effect=\"last known roll is used\"", *before_ns);
-  }
-  return roll_->roll_rad();
-}
-
-/// False: slam is gone, or has not answered for too long.
-bool DetectorService::wait_for_roll(std::int64_t stamp_ns) {
-  const std::int64_t since_ns = service::monotonic_ns(), most_ns = std::int64_t{config_.roll_timeout_ms} * 1'000'000;
-  std::int64_t waited_ns = 0;
-  while (waited_ns < most_ns && !runtime_.stop.stop_requested()) {
-    const auto left = std::chrono::ceil<std::chrono::milliseconds>(std::chrono::nanoseconds(most_ns - waited_ns));
-    if (roll_->wait_for(stamp_ns, std::min(left, kLookAtSlam))) return true;
-    waited_ns = service::monotonic_ns() - since_ns;
-    runtime_.heartbeat.tick();
-    const bool gone = runtime_.heartbeat.gone("slam");
-    if (slam_seen_ && gone && waited_ns > kSlamPatienceNs) return false;
-    slam_seen_ = slam_seen_ || !gone;
-  }
-  return false;
 }
 
 /// What computes the boxes, in the status and the log.
@@ -317,8 +260,7 @@ void DetectorService::count(double detect_ms) {
 }
 
 bool DetectorService::peers_matched() const {
-  const bool slam_matched = !roll_ || runtime_.pace != service::Pace::kLockstep || tracking_.matched() > 0;
-  return input_->matched() > 0 && detections_.matched() > 0 && slam_matched;
+  return input_->matched() > 0 && detections_.matched() > 0;
 }
 
 void DetectorService::report_state() {

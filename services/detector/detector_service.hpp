@@ -19,12 +19,9 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
-#include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/service/runtime.hpp"
-#include "common/service/topic_source.hpp"
 #include "common/vision/detection.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/engine_guard.hpp"
 #include "services/detector/image_input.hpp"
 #include "services/detector/mask_stage.hpp"
@@ -35,16 +32,14 @@ class App;
 
 namespace rtd::detector {
 
-/// Logs what happens to the engine: that it was verified, why the CPU takes its place, that the memory of its device
-/// holds fewer images. Each of these once, also when several guards report. Not thread-safe.
+/// Logs what happens to the engine: why the CPU takes its place, that the memory of its device holds fewer images. Each
+/// of these once, also when several guards report. Not thread-safe.
 class EngineLog {
  public:
   explicit EngineLog(std::string asked) : asked_(std::move(asked)) {}
 
   void report(const EngineGuard& guard) {
     const std::string& device = guard.detector().device();
-    if (guard.verified() == EngineGuard::kVerifiedImages && !std::exchange(verified_, true))
-      SPDLOG_INFO("event=engine_verified images={} device=\"{}\"", guard.verified(), device);
     const std::string before = std::exchange(device_, device);
     const bool fell_back = !guard.fallback().empty();
     if (fell_back && guard.fallback() != fallback_) {
@@ -58,7 +53,6 @@ class EngineLog {
  private:
   const std::string asked_;
   std::string device_, fallback_;
-  bool verified_ = false;
 };
 
 /// vision_msgs: box centre and size in px, class_id = class name, header.stamp = stamp of the image.
@@ -75,13 +69,8 @@ struct ServiceConfig {
   DetectorConfig core;
   service::MaskSettings masks;
   MaskConfig mask_core;
-  bool verify_engine = false;
   int workers = 2;
   double max_rate_hz = 0;
-  std::string derotate = "off";
-  double derotate_min_deg = RollConfig{}.min_roll_rad / kRadPerDeg;
-  int roll_timeout_ms = service::kEveryFramePatience.answer_ms;
-  double first_roll_deg = 0, first_pitch_deg = 0;
 
   void bind(auto& binder) {
     service::bind_model(binder, model);
@@ -100,26 +89,13 @@ struct ServiceConfig {
     service::bind_engine(binder, core.engine);
     masks.bind(binder);
     mask_core.bind(binder);
-    binder
-        .field("verify_engine", verify_engine,
-               "compare the first ten images with the CPU, and continue with the CPU if they differ")
-        .option("--verify-engine");
     binder.field("workers", workers, {1, 16}, "pace asap: images worked on side by side, each with its own network");
     binder.field("max_rate_hz", max_rate_hz, {0.0, 1000.0}, "realtime pace: detect at most this often, 0 = no limit")
         .option("--max-rate");
-    binder.choice("derotate", derotate, {"off", "on"},
-                  "on: detect on the image turned upright by the roll of slam's poses");
-    binder.field("derotate_min_deg", derotate_min_deg, {0.0, 180.0}, "a smaller roll is left as it is");
-    binder.field("roll_timeout_ms", roll_timeout_ms, {1, 60000},
-                 "pace lockstep: longest wait for a living slam's pose of the image before");
-    binder.field("first_roll_deg", first_roll_deg, {-180.0, 180.0},
-                 "roll of the first image: by how much it must be turned clockwise to stand upright");
-    binder.field("first_pitch_deg", first_pitch_deg, {-60.0, 60.0}, "how far the first camera looked down");
   }
 };
 
-/// The part of the configuration for the network, with the file found and the folder for compiled kernels. Throws
-/// ConfigError without weights.
+/// The part of the configuration for the network, with the file found. Throws ConfigError without weights.
 DetectorConfig core_config(const ServiceConfig& config);
 /// The part for person masks; without a path there are none. Throws ConfigError when they are asked for and their
 /// network is not found.
@@ -169,8 +145,6 @@ class DetectorService {
   void count(double detect_ms);
   bool peers_matched() const;
   void report_state();
-  double roll_for(const Arrival& arrival);
-  bool wait_for_roll(std::int64_t stamp_ns);
   void keep_rate(std::int64_t started_ns) const;
 
   const Config config_;
@@ -181,12 +155,7 @@ class DetectorService {
   std::unique_ptr<MaskStage> masks_;     ///< null: boxes alone
   bus::Writer<msg::Image> mask_writer_;  ///< before the other writer: who reads both is matched here first
   bus::Writer<msg::Detection2DArray> detections_;
-  const std::shared_ptr<bus::SourceGate> slam_;
   std::unique_ptr<ImageInput> input_;
-  std::shared_ptr<RollFeedback> roll_;  ///< null while detector.derotate is off
-  bus::Reader<msg::TrackingResult> tracking_;
-  std::optional<std::int64_t> last_stamp_ns_;  ///< lockstep: of the image before
-  bool slam_seen_ = false;                     ///< lockstep: its heartbeat
   std::mutex take_mutex_;
   std::uint64_t taken_ = 0;
   std::mutex turn_mutex_;
@@ -197,7 +166,7 @@ class DetectorService {
   std::uint64_t broken_ = 0;
   std::string engine_;  ///< what computes the boxes, for people
   double total_detect_ms_ = 0, max_detect_ms_ = 0;
-  service::RateLimit broken_log_{std::chrono::seconds(1)}, roll_log_{std::chrono::seconds(1)};
+  service::RateLimit broken_log_{std::chrono::seconds(1)};
 };
 
 }  // namespace rtd::detector

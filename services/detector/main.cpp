@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/command_line.hpp"
 #include "common/service/run_service.hpp"
-#include "services/detector/core/engine.hpp"
 #include "services/detector/detector_service.hpp"
 #include "services/detector/fleet_service.hpp"
 #include "services/detector/image_table.hpp"
@@ -31,7 +30,6 @@ int run_detector(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  rtd::service::restart_with(rtd::detector::kAllowAllDevices, "1", argv);
   if (rtd::detector::asks_for_image_table(argc, argv)) return rtd::detector::print_image_table(argc, argv);
   return run_detector(argc, argv);
 }

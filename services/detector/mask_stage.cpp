@@ -84,7 +84,7 @@ vision::PersonMasks MaskStage::segment(std::size_t worker, const BoxedImage& box
   const std::int64_t started_ns = service::monotonic_ns();
   vision::PersonMasks masks;
   try {
-    masks = segmenters_[worker]->segment(boxed.color_bgr, boxed.detections, most, boxed.roll_rad);
+    masks = segmenters_[worker]->segment(boxed.color_bgr, boxed.detections, most);
   } catch (const std::exception& error) {
     const std::lock_guard lock(mutex_);
     if (failure_log_.pass()) SPDLOG_WARN("event=masks_failed cause=\"{}\" effect=\"boxes alone\"", error.what());

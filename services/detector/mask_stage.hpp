@@ -38,7 +38,6 @@ class MaskBudget {
 struct BoxedImage {
   const cv::Mat& color_bgr;
   const std::vector<vision::Detection>& detections;
-  double roll_rad = 0;  ///< of the camera
   double boxes_ms = 0;  ///< what the detections took
 };
 

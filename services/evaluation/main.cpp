@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <iostream>
-#include <string_view>
 
 #include "common/service/command_line.hpp"
-#include "services/detector/core/engine.hpp"
 #include "services/evaluation/commands/ablate_command.hpp"
 #include "services/evaluation/commands/benchmark_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
@@ -44,8 +42,6 @@ int dispatch(const CLI::App& app, const Requests& requests) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool detects = argc > 1 && std::string_view(argv[1]) == "detector";
-  if (detects) service::restart_with(detector::kAllowAllDevices, "1", argv);
   Requests requests;
   CLI::App app{"Accuracy of trajectories and detectors, ablations, benchmarks, and the reports of runs", "rtd-eval"};
   app.require_subcommand(1);

@@ -22,7 +22,6 @@
 #include "common/service/standard_streams.hpp"
 #include "services/launcher/core/completion/completion.hpp"
 #include "services/launcher/core/run/viewer_use.hpp"
-#include "services/launcher/core/settings/settings_list.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_command.hpp"
@@ -30,7 +29,7 @@
 namespace rtd::launcher {
 namespace {
 
-const std::vector<std::string> kBuiltIn = {"run", "demo", "config", "doctor", "version", "help", "complete"};
+const std::vector<std::string> kBuiltIn = {"run", "demo", "doctor", "version", "help", "complete"};
 
 struct ExternalCommand {
   const char* name;        ///< "info" of `rtd info`
@@ -184,7 +183,6 @@ struct Requests {
   RunOptions run;
   DemoOptions demo;
   DoctorOptions doctor;
-  service::ConfigSources config;
 };
 
 void add_run_command(CLI::App& app, RunOptions& options) {
@@ -259,27 +257,9 @@ void add_doctor_command(CLI::App& app, DoctorOptions& options) {
   service::add_source_options(*command, options.config);
 }
 
-void add_config_command(CLI::App& app, service::ConfigSources& sources) {
-  CLI::App* command = app.add_subcommand("config", "Show the settings that people change, with the values in force");
-  service::add_bus_options(*command, sources);
-  service::add_source_options(*command, sources);
-}
-
-/// The services read their settings, and say what is wrong with them.
-int print_settings(const service::ConfigSources& sources) {
-  std::vector<std::string> arguments = service::to_command_line(sources);
-  arguments.emplace_back("--print-config");
-  std::cout << settings_text([&](const std::string& service) {
-    const std::string executable = process::find_executable("rtd-" + service);
-    return executable.empty() ? "" : process::output_of(executable, arguments);
-  });
-  return service::kOk;
-}
-
 int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("run")) return run(requests.run).code;
   if (app.got_subcommand("demo")) return demo(requests.demo);
-  if (app.got_subcommand("config")) return print_settings(requests.config);
   if (app.got_subcommand("doctor")) return doctor(requests.doctor, std::cout, std::cerr);
   if (app.got_subcommand("version")) {
     std::cout << "rtd " << RTD_VERSION << '\n';
@@ -307,7 +287,6 @@ int front(int argc, char** argv) {
   service::wrap_help(app);
   add_run_command(app, requests.run);
   add_demo_command(app, requests.demo);
-  add_config_command(app, requests.config);
   add_doctor_command(app, requests.doctor);
   app.add_subcommand("version", "Print the version");
   app.add_subcommand("help", "Print this text");

@@ -9,14 +9,14 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/folder/frame_lists.hpp"
-#include "common/geometry/trajectory.hpp"
+#include "common/geometry/pose_list.hpp"
 
 namespace rtd::test_support {
 namespace {
 
 geometry::Trajectory read_poses(const std::string& path) {
   if (!std::filesystem::exists(path)) return {};
-  return geometry::read_tum_trajectory(path, geometry::TumRows::kAsWritten);
+  return geometry::read_pose_list(std::filesystem::path(path)).poses;
 }
 
 Eigen::Isometry3d nearest_pose(const geometry::Trajectory& poses, std::int64_t stamp_ns) {

@@ -58,7 +58,7 @@ class Filtered final : public FrontEnd {
   /// Without `look`: no detector.
   Filtered(const filter::FilterConfig& config, const Look& look, const DetectorOptions& detector,
            const std::vector<ImageFault>& faults)
-      : filter_(config, service::monotonic_ns), roll_(detector.roll), faults_(faults) {
+      : filter_(config, service::monotonic_ns), faults_(faults) {
     if (!look) return;
     detector_.emplace([this, look](const camera::SourceFrame& frame) { return timed(look, frame); }, detector,
                       make_look_at_pixels(detector));
@@ -88,7 +88,6 @@ class Filtered final : public FrontEnd {
       filter_.on_keyframe(filter::to_slam_keyframe(event));
     const msg::TrackingResult result = slam::make_result(output.result);
     if (const auto pose = filter::to_slam_pose(result)) filter_.on_pose(*pose);
-    if (roll_ && msg::has_pose(result.state)) roll_->update(msg::to_isometry(result.T_world_camera));
   }
 
  private:
@@ -100,7 +99,6 @@ class Filtered final : public FrontEnd {
   }
 
   filter::DynamicFilter filter_;
-  std::shared_ptr<detector::CameraRoll> roll_;  ///< may be none
   ImageFaults faults_;
   std::optional<DetectorPace> detector_;
   double detector_ms_ = 0;  ///< spent for the present frame
@@ -125,9 +123,8 @@ std::unique_ptr<FrontEnd> make_front_end(const FrontEndOptions& options) {
   const filter::FilterConfig config = filter_config(options);
   if (!is_filter_mode(options.mode)) return std::make_unique<MaskedOrb>(config.orb, options.mode == "true-mask");
   const bool looks = options.mode != "geometry" && options.detector.kind != "off";
-  DetectorOptions paced = options.detector;
-  if (paced.derotate) paced.roll = std::make_shared<detector::CameraRoll>(*paced.derotate);
-  return std::make_unique<Filtered>(config, looks ? make_look(paced) : Look{}, paced, options.image_faults);
+  return std::make_unique<Filtered>(config, looks ? make_look(options.detector) : Look{}, options.detector,
+                                    options.image_faults);
 }
 
 }  // namespace rtd::test_support

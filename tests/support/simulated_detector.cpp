@@ -135,10 +135,9 @@ Look real_look(const DetectorOptions& options) {
   config.engine = "cpu";
   config.decode.confidence_threshold = options.confidence;
   config.decode.objectness_threshold = std::min(config.decode.objectness_threshold, options.confidence);
-  return
-      [network = std::make_shared<detector::Detector>(config), roll = options.roll](const camera::SourceFrame& frame) {
-        return network->detect_upright(frame.image.color_bgr, roll ? roll->roll_rad() : 0);
-      };
+  return [network = std::make_shared<detector::Detector>(config)](const camera::SourceFrame& frame) {
+    return network->detect(frame.image.color_bgr);
+  };
 }
 
 /// The same answers, a little off.

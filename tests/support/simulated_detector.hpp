@@ -13,7 +13,6 @@
 #include "common/service/model_table.hpp"
 #include "common/vision/detection.hpp"
 #include "common/vision/person_masks.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector_config.hpp"
 
 namespace rtd::test_support {
@@ -45,13 +44,10 @@ struct DetectorOptions {
   std::string model = service::kPaperModel;  ///< real: as `--model` of rtd run
   /// real: least score
   double confidence = detector::DecodeConfig{}.confidence_threshold;
-  /// real: on the image turned upright, as rtd-detector does; none = as it is
-  std::optional<detector::RollConfig> derotate;
   std::string remembered_in;  ///< real and truth: file of known answers (remembered_detections.hpp)
   /// off; truth: the source's moving pixels in its boxes of people; else: the ONNX file of a network for them
   std::string masks = "off";
-  std::string masks_remembered_in;             ///< of a network: file of known answers
-  std::shared_ptr<detector::CameraRoll> roll;  ///< of the run, made from `derotate`
+  std::string masks_remembered_in;  ///< of a network: file of known answers
 };
 
 /// The boxes that a detector finds in one frame.

@@ -2,13 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/domain_config.hpp"
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 
 #include "common/bus/backend.hpp"
 #include "common/bus/network.hpp"
@@ -93,15 +87,15 @@ std::string internal(const BusOptions& options, const HostLimits& limits) {
   const auto buffer = [](const char* name, std::uint32_t size) {
     return "<" + std::string(name) + R"( min="default" max=")" + bytes(size) + "\"/>";
   };
-  return element("Internal",
-                 buffer("SocketReceiveBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max)) +
-                     buffer("SocketSendBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max)) +
-                     R"(<HeartbeatInterval min="5 ms" minsched="20 ms" max="1 s">20 ms</HeartbeatInterval>)" +
-                     element("PreEmptiveAckDelay", "1 ms") + element("NackDelay", "5 ms") +
-                     element("AutoReschedNackDelay", "200 ms") +
-                     element("MaxSampleSize", bytes(msg::kLargestOfOthers)) +
-                     element("Watermarks", element("WhcHigh", "1 GB") + element("WhcHighInit", "1 GB") +
-                                               element("WhcAdaptive", "false")));
+  return element(
+      "Internal",
+      buffer("SocketReceiveBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.rmem_max)) +
+          buffer("SocketSendBufferSize", socket_buffer_bytes(options.socket_buffer_kib, limits.wmem_max)) +
+          R"(<HeartbeatInterval min="5 ms" minsched="20 ms" max="1 s">20 ms</HeartbeatInterval>)" +
+          element("PreEmptiveAckDelay", "1 ms") + element("NackDelay", "5 ms") +
+          element("AutoReschedNackDelay", "200 ms") + element("MaxSampleSize", bytes(msg::kLargestOfOthers)) +
+          element("Watermarks",
+                  element("WhcHigh", "1 GB") + element("WhcHighInit", "1 GB") + element("WhcAdaptive", "false")));
 }
 
 }  // namespace
@@ -112,27 +106,7 @@ std::string domain_config(const BusOptions& options, const HostLimits& limits, D
   // The trace of discovery goes to UnmatchedWatch; the file is only to be one that can be opened.
   if (options.security.enabled())
     text += element("Tracing", element("Category", "discovery") + element("OutputFile", "/dev/null"));
-  if (options.iceoryx) text += element("SharedMemory", element("Enable", "true") + element("LogLevel", "warn"));
   return R"(<CycloneDDS><Domain Id="any">)" + text + "</Domain></CycloneDDS>";
-}
-
-/// The daemon listens on a datagram socket: connecting to it sends nothing, and fails when no process has it open, even
-/// if the file was left behind.
-void require_roudi(const std::string& socket_path) {
-  const int probe = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (probe < 0) throw BusError(std::string("no socket to ask iox-roudi: ") + std::strerror(errno));
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  socket_path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-  const int failed = connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0 ? 0 : errno;
-  close(probe);
-  if (failed == 0) return;
-  const bool forbidden = failed == EACCES || failed == EPERM;
-  throw BusError("bus.iceoryx is true, but " +
-                 (forbidden ? "the iox-roudi of this host belongs to a user or group that we are not in (" +
-                                  socket_path + ": " + std::strerror(failed) + ")"
-                            : std::string("no iox-roudi runs on this host")) +
-                 "; start it (package iceoryx: iox-roudi), or leave bus.iceoryx out");
 }
 
 }  // namespace rtd::bus::cyclonedds

@@ -19,8 +19,4 @@ std::string domain_config(const BusOptions& options, const HostLimits& limits,
                           DiscoveryPort port = DiscoveryPort::kOfPeers,
                           const std::vector<std::string>& local_addresses = {});
 
-/// Throws BusError when no iox-roudi answers on this host: without it iceoryx waits for 60 s and then ends the process.
-/// `socket`: where it listens; for tests.
-void require_roudi(const std::string& socket = "/tmp/roudi");
-
 }  // namespace rtd::bus::cyclonedds

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/endpoints.hpp"
 
-#include <dds/ddsc/dds_loan_api.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -140,8 +138,8 @@ bool CycloneReader::handle_one() {
   if (reader == 0) return false;
   const std::optional<TakenSample> sample = take_sample(reader);
   if (!sample) return false;
-  // Cyclone does not report samples that a writer sent and that will not come; their numbers show them. Samples that
-  // came through iceoryx have none.
+  // Cyclone does not report samples that a writer sent and that will not come; their numbers show them. Samples of
+  // this process have none.
   if (sample->origin.sequence > 0) {
     if (const auto gap = gaps_.next(sample->origin.writer, sample->origin.sequence)) {
       missing_ += gap->count;
@@ -199,15 +197,9 @@ TypedWriter::TypedWriter(std::shared_ptr<Participant> participant, MessageId id,
                          StatusCallbacks callbacks)
     : id_(id),
       largest_(sample_type(id).largest_bytes),
-      writer_(participant, sample_type(id), topic, std::move(qos), std::move(callbacks)),
-      shares_memory_(participant->shares_memory() && dds_is_shared_memory_available(writer_.handle())) {}
-
-TypedWriter::~TypedWriter() {
-  while (!shared_loans_.empty()) discard_loan(*shared_loans_.begin());
-}
+      writer_(std::move(participant), sample_type(id), topic, std::move(qos), std::move(callbacks)) {}
 
 bool TypedWriter::write(const void* message) {
-  if (shares_memory_) return dds_write(writer_.handle(), message) == DDS_RETCODE_OK;
   std::shared_ptr<ByteBlock> sample = encode(id_, writer_.type(), message);
   if (sample->view().size() <= largest_) return writer_.write(std::move(sample));
   writer_.report_too_large();
@@ -215,30 +207,15 @@ bool TypedWriter::write(const void* message) {
 }
 
 void* TypedWriter::loan() {
-  void* slot = nullptr;
-  if (shares_memory_ && dds_loan_sample(writer_.handle(), &slot) == DDS_RETCODE_OK) {
-    return *shared_loans_.insert(slot).first;
-  }
   std::shared_ptr<ByteBlock> block = plain_block(id_, writer_.type());
-  slot = block->bytes().data() + ByteBlock::kCdrHeaderBytes;
+  void* const slot = block->bytes().data() + ByteBlock::kCdrHeaderBytes;
   loans_.emplace(slot, std::move(block));
   return slot;
 }
 
 bool TypedWriter::write_loaned(void* slot) {
-  if (shared_loans_.erase(slot) > 0) return dds_write(writer_.handle(), slot) == DDS_RETCODE_OK;
   auto node = loans_.extract(slot);
-  if (node.empty()) return false;
-  if (shares_memory_) return dds_write(writer_.handle(), slot) == DDS_RETCODE_OK;  // there was none left to lend
-  return writer_.write(std::move(node.mapped()));
-}
-
-void TypedWriter::discard_loan(void* slot) {
-  if (shared_loans_.erase(slot) > 0) {
-    dds_return_loan(writer_.handle(), &slot, 1);
-  } else {
-    loans_.erase(slot);
-  }
+  return !node.empty() && writer_.write(std::move(node.mapped()));
 }
 
 }  // namespace rtd::bus::cyclonedds

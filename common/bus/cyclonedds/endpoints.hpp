@@ -8,7 +8,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "common/bus/cyclonedds/participant.hpp"
@@ -80,18 +79,16 @@ class CycloneWriter {
   std::optional<NodeEndpoints::Entry> entry_;
 };
 
-/// Writes messages of common/msg. A loan is the sample's own memory: write_loaned() copies nothing. With iceoryx it
-/// lies in shared memory, as long as the daemon has some.
+/// Writes messages of common/msg. A loan is the sample's own memory: write_loaned() copies nothing.
 class TypedWriter : public WriterBackend {
  public:
   TypedWriter(std::shared_ptr<Participant> participant, MessageId id, const std::string& topic, Qos qos,
               StatusCallbacks callbacks);
-  ~TypedWriter() override;
 
   bool write(const void* message) override;
   void* loan() override;
   bool write_loaned(void* slot) override;
-  void discard_loan(void* slot) override;
+  void discard_loan(void* slot) override { loans_.erase(slot); }
   int matched() const override { return writer_.matched(); }
   bool wait_acknowledged(int timeout_ms) override { return writer_.wait_acknowledged(timeout_ms); }
   WriterId id() const override { return guid_of(writer_.handle()); }
@@ -100,9 +97,7 @@ class TypedWriter : public WriterBackend {
   const MessageId id_;
   const std::size_t largest_;  ///< sample
   CycloneWriter writer_;
-  const bool shares_memory_;
   std::map<void*, std::shared_ptr<ByteBlock>> loans_;
-  std::set<void*> shared_loans_;
 };
 
 }  // namespace rtd::bus::cyclonedds

@@ -91,7 +91,6 @@ dds_entity_t create_at(const BusOptions& options, const HostLimits& limits, Disc
 
 /// When all ports that peers ask are taken, multicast still finds us.
 std::shared_ptr<Domain> create_domain(const BusOptions& options, const HostLimits& limits, const std::string& config) {
-  if (options.iceoryx) require_roudi();
   const LogCapture log;
   dds_entity_t handle = create_at(options, limits, DiscoveryPort::kOfPeers);
   if (handle < 0 && !takes_participant_port(options) && free_participant_ports(options.domain) == 0)
@@ -218,7 +217,6 @@ Participant::Participant(const BusOptions& options, std::shared_ptr<NodeEndpoint
       domain_(join_domain(options)),
       participant_(create_participant(options)),
       id_(guid_of(participant_.get())),
-      shares_memory_(options.iceoryx),
       loopback_only_(options.network.loopback_only),
       node_endpoints_(node ? std::move(node) : std::make_shared<NodeEndpoints>()) {}
 

@@ -61,7 +61,6 @@ class Participant {
   bool is_own(const WriterId& endpoint) const;
   /// Names of the participants of the domain, ours included.
   std::map<ParticipantId, std::string> participants() const;
-  bool shares_memory() const { return shares_memory_; }
   /// Topics that stay on the host are in a partition of the host, so that no reader elsewhere is matched. Without a
   /// network they need none.
   void set_writer_partition(const std::string& topic, dds_qos_t& qos) const;
@@ -85,7 +84,7 @@ class Participant {
   WriterId id_{};
   mutable std::once_flag asked_;
   mutable dds_entity_t participants_ = 0;  ///< a reader, from the first call of participants() on
-  const bool shares_memory_, loopback_only_;
+  const bool loopback_only_;
   std::mutex mutex_;
   std::map<std::string, KnownTopic> topics_;
   TopicTypes types_;

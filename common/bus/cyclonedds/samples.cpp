@@ -13,9 +13,6 @@ extern "C" {
 #include <dds/ddsi/q_misc.h>
 #include <dds/ddsi/q_protocol.h>
 #include <dds/ddsi/q_radmin.h>
-#ifdef DDS_HAS_SHM
-#include <dds/ddsi/ddsi_shm_transport.h>
-#endif
 }
 
 #include <algorithm>
@@ -34,7 +31,7 @@ struct Sertype : ddsi_sertype {
 
 /// Cyclone's view of one sample. Counted by Cyclone, freed by free_sample().
 struct Serdata : ddsi_serdata {
-  std::shared_ptr<ByteBlock> bytes;  ///< empty: no data (a dispose or the like), or still in `iox_chunk`
+  std::shared_ptr<ByteBlock> bytes;  ///< empty: no data (a dispose or the like)
   SampleOrigin origin;
   std::int64_t received_ns = 0;
 };
@@ -120,19 +117,9 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
   return create_serdata(type, SDK_KEY, nullptr);
 }
 
-std::shared_ptr<ByteBlock> block_from_plain(const ddsi_sertype* type, const void* plain) {
-  constexpr std::byte kLittleEndianCdr[kHeaderBytes] = {std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
-  const std::size_t size = static_cast<const Sertype*>(type)->description.plain_bytes;
-  auto block = acquire_block(type, kHeaderBytes + size);
-  std::memcpy(block->bytes().data(), kLittleEndianCdr, kHeaderBytes);
-  std::memcpy(block->bytes().data() + kHeaderBytes, plain, size);
-  return block;
-}
-
-/// dds_write() of a plain message, which we call when it may go through iceoryx.
-ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* plain) {
-  const bool known = kind == SDK_DATA && static_cast<const Sertype*>(type)->description.plain_bytes > 0;
-  return known ? create_serdata(type, kind, block_from_plain(type, plain)) : nullptr;
+/// Only for dds_write(), which we do not call.
+ddsi_serdata* from_sample(const ddsi_sertype*, ddsi_serdata_kind, const void*) {
+  return nullptr;
 }
 
 std::uint32_t size(const ddsi_serdata* sample) {
@@ -181,37 +168,12 @@ void free_sample(ddsi_serdata* sample) {
   // Cyclone's count orders this behind the others' use of the sample; a thread sanitizer, which does not see into that
   // library, learns it from this load: they gave the sample back with an inline function, in code of ours.
   (void)__atomic_load_n(&sample->refc.v, __ATOMIC_ACQUIRE);
-#ifdef DDS_HAS_SHM
-  if (sample->iox_chunk != nullptr && sample->iox_subscriber != nullptr) {
-    free_iox_chunk(static_cast<iox_sub_t*>(sample->iox_subscriber), &sample->iox_chunk);
-  }
-#endif
   delete &ours(sample);
 }
 
 std::size_t print(const ddsi_sertype*, const ddsi_serdata* sample, char* text, std::size_t capacity) {
   return static_cast<std::size_t>(std::snprintf(text, capacity, "%zu bytes", bytes_of(sample).size()));
 }
-
-#ifdef DDS_HAS_SHM
-std::uint32_t sample_size(const ddsi_serdata* sample) {
-  return sample->type->iox_size;
-}
-
-/// A sample in iceoryx's memory: one of ours on its way out (no subscriber), or one that came. It stays there until it
-/// is taken, for Cyclone continues reading the chunk's header.
-ddsi_serdata* from_shared_memory(const ddsi_sertype* type, ddsi_serdata_kind kind, void* subscriber, void* chunk) {
-  Serdata* const sample = create_serdata(type, kind, nullptr);
-  sample->iox_chunk = chunk;
-  sample->iox_subscriber = subscriber;
-  sample->received_ns = dds_time();
-  if (subscriber != nullptr) {
-    const ddsi_guid_t guid = nn_hton_guid(iceoryx_header_from_chunk(chunk)->guid);
-    std::memcpy(sample->origin.writer.data(), &guid, sizeof(guid));
-  }
-  return sample;
-}
-#endif
 
 constexpr ddsi_serdata_ops sample_ops() {
   ddsi_serdata_ops ops{};
@@ -230,26 +192,7 @@ constexpr ddsi_serdata_ops sample_ops() {
   ops.free = free_sample;
   ops.print = print;
   ops.get_keyhash = keyhash;
-#ifdef DDS_HAS_SHM
-  ops.get_sample_size = sample_size;
-  ops.from_iox_buffer = from_shared_memory;
-#endif
   return ops;
-}
-
-/// What lies in iceoryx's memory, copied into ours; that memory is given back.
-void leave_shared_memory(Serdata& sample) {
-#ifdef DDS_HAS_SHM
-  if (sample.iox_chunk == nullptr || sample.iox_subscriber == nullptr) return;
-  const auto* const header = iceoryx_header_from_chunk(sample.iox_chunk);
-  const bool raw = header->shm_data_state == IOX_CHUNK_CONTAINS_RAW_DATA;
-  if (raw && header->data_size == sample.type->iox_size) {
-    sample.bytes = block_from_plain(sample.type, sample.iox_chunk);
-  }
-  free_iox_chunk(static_cast<iox_sub_t*>(sample.iox_subscriber), &sample.iox_chunk);
-#else
-  (void)sample;
-#endif
 }
 
 const SampleType& description(const ddsi_sertype* type) {
@@ -270,7 +213,7 @@ std::uint32_t hash(const ddsi_sertype* type) {
   return own.plain_bytes * 4 + (own.keyed ? 1U : 0U) + (own.any_representation ? 2U : 0U);
 }
 
-// Samples as structures are never asked for: we take and give serialised ones. Loans through iceoryx need no more.
+// Samples as structures are never asked for: we take and give serialised ones.
 void zero_samples(const ddsi_sertype*, void*, std::size_t) {}
 void realloc_samples(void** pointers, const ddsi_sertype*, void*, std::size_t, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) pointers[i] = nullptr;
@@ -286,7 +229,7 @@ constexpr ddsi_sertype_ops type_ops() {
   ops.free_samples = free_samples;
   ops.equal = equal;
   ops.hash = hash;
-  return ops;  // without serialize_into() only types of fixed size go through iceoryx
+  return ops;
 }
 
 }  // namespace
@@ -296,14 +239,10 @@ ddsi_sertype* create_sertype(const SampleType& description) {
   static const ddsi_sertype_ops kOps = type_ops();
   auto type = std::make_unique<Sertype>();
   type->description = description;
-  std::uint32_t flags = description.keyed ? 0 : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY;
-  if (description.plain_bytes > 0) flags |= DDSI_SERTYPE_FLAG_FIXED_SIZE;
+  const std::uint32_t flags = description.keyed ? 0 : DDSI_SERTYPE_FLAG_TOPICKIND_NO_KEY;
   ddsi_sertype_init_flags(type.get(), description.name.c_str(), &kOps, &kSampleOps, flags);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   if (description.any_representation) type->allowed_data_representation |= DDS_DATA_REPRESENTATION_FLAG_XCDR2;
-#ifdef DDS_HAS_SHM
-  type->iox_size = description.plain_bytes;
-#endif
   return type.release();
 }
 
@@ -317,10 +256,7 @@ std::optional<TakenSample> take_sample(dds_entity_t reader) {
   if (dds_takecdr(reader, &taken, 1, &info, DDS_ANY_STATE) < 1) return std::nullopt;
   Serdata& sample = *static_cast<Serdata*>(taken);
   TakenSample result;
-  if (info.valid_data) {
-    leave_shared_memory(sample);
-    result.bytes = sample.bytes;
-  }
+  if (info.valid_data) result.bytes = sample.bytes;
   result.origin = sample.origin;
   result.received_ns = sample.received_ns != 0 ? sample.received_ns : dds_time();
   result.source_ns = info.source_timestamp > 0 ? info.source_timestamp : result.received_ns;

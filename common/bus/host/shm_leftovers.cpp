@@ -28,8 +28,8 @@
 namespace rtd::bus {
 namespace {
 
-/// Fast DDS's transport and data sharing, the management segment of iceoryx (its pools have the name of a user group).
-const std::vector<std::string> kNameParts = {"fastrtps_", "fastdds_", "fast_datasharing_", "iceoryx_mgmt"};
+/// Fast DDS's transport and data sharing.
+const std::vector<std::string> kNameParts = {"fastrtps_", "fastdds_", "fast_datasharing_"};
 
 /// A file, whatever its name is now: device and inode.
 using FileId = std::pair<std::uint64_t, std::uint64_t>;
@@ -181,7 +181,8 @@ std::string shm_group(const std::string& name) {
 
 /// A folder in another, which is not a link elsewhere; a bad descriptor when it may not be read.
 Folder open_folder(int parent, const std::string& name) {
-  return std::make_shared<io::Descriptor>(openat(parent, name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  return std::make_shared<io::Descriptor>(
+      openat(parent, name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
 }
 
 /// Those of the folder, and of the folders of rings in it. `within`: its name and '/'.

@@ -40,7 +40,7 @@ struct FreeSpaceConfig {
 /// Cells of space that depth images looked through. Each kept image is a decimated one in which a pixel holds the depth
 /// up to which all of its readings were free; a cell counts the images that saw through its centre. The sum is exact:
 /// when slam moves a keyframe, its images are subtracted where they were and added where they are. A reading on
-/// something that moves clears what is before it, and nothing behind it. docs/theory/dense_map.md Eq. (6).
+/// something that moves clears what is before it, and nothing behind it. docs/theory/dense_map.md Eq. (5).
 /// Deterministic in the order of calls. One thread.
 class FreeSpace {
  public:

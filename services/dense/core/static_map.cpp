@@ -253,17 +253,6 @@ std::vector<CloudPoint> StaticMap::cloud(std::size_t max_points) {
   return points;
 }
 
-bool StaticMap::confirms(const Eigen::Vector3f& p_world) const {
-  const auto step_m = static_cast<float>(map_.voxel_m());
-  for (int i = 0; i < 27; ++i) {
-    const Eigen::Vector3f shift(static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 % 3 - 1),
-                                static_cast<float>(i / 9 - 1));
-    const Voxel* voxel = map_.at(p_world + step_m * shift);
-    if (voxel != nullptr && believed(*voxel)) return true;
-  }
-  return false;
-}
-
 void StaticMap::clear() {
   map_.clear();
   moving_.clear();

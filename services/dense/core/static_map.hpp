@@ -107,8 +107,6 @@ class StaticMap {
       if (believed(voxel)) visit(voxel);
     }
   }
-  /// A believed voxel lies within one cell of the point.
-  bool confirms(const Eigen::Vector3f& p_world) const;
   std::size_t voxels() const { return map_.voxels().size(); }
   bool full() const { return map_.full(); }
   const KeyframePoses& keyframes() const { return keyframes_; }

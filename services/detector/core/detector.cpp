@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/core/detector.hpp"
 
-#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <utility>
@@ -30,18 +29,6 @@ cv::Mat to_bgr(const cv::Mat& image) {
   return bgr;
 }
 
-/// Input pixels to frame pixels, clipped to the frame.
-cv::Rect2f box_in_frame(const Candidate& candidate, const Letterbox& letterbox, cv::Size frame) {
-  const auto to_x_px = [&](float x_px) {
-    return static_cast<float>(std::clamp((x_px - letterbox.pad_left_px) / letterbox.scale_x, 0.0, double(frame.width)));
-  };
-  const auto to_y_px = [&](float y_px) {
-    return static_cast<float>(std::clamp((y_px - letterbox.pad_top_px) / letterbox.scale_y, 0.0, double(frame.height)));
-  };
-  const float left_px = to_x_px(candidate.left_px), top_px = to_y_px(candidate.top_px);
-  return {left_px, top_px, to_x_px(candidate.right_px) - left_px, to_y_px(candidate.bottom_px) - top_px};
-}
-
 }  // namespace
 
 Detector::Detector(DetectorConfig config) {
@@ -54,15 +41,8 @@ std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   const cv::Mat image = to_bgr(color_bgr);
   const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
   fill_blob(image, letterbox, network_->input(), network_->pixels(), blob_);
-  return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, letterbox, image.size()); });
-}
-
-std::vector<vision::Detection> Detector::detect_upright(const cv::Mat& color_bgr, double roll_rad) {
-  if (roll_rad == 0 || color_bgr.empty()) return detect(color_bgr);
-  const cv::Mat image = to_bgr(color_bgr);
-  const UprightView view = fit_upright(image.size(), network_->input(), roll_rad);
-  fill_upright_blob(image, view, network_->pixels(), blob_);
-  return find_in_blob([&](const Candidate& candidate) { return box_in_frame(candidate, view); });
+  network_->infer(blob_);
+  return boxes_of(0, [&](const Candidate& candidate) { return box_in_frame(candidate, letterbox, image.size()); });
 }
 
 std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<const cv::Mat> images) {
@@ -90,11 +70,6 @@ std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<con
     found.push_back(boxes_of(static_cast<int>(i), box_of));
   }
   return found;
-}
-
-std::vector<vision::Detection> Detector::find_in_blob(const BoxInFrame& box_of) {
-  network_->infer(blob_);
-  return boxes_of(0, box_of);
 }
 
 std::vector<vision::Detection> Detector::boxes_of(int image, const BoxInFrame& box_of) const {

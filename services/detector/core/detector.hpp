@@ -25,9 +25,6 @@ class Detector {
   /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
   /// any size; an empty image has no objects. Throws std::invalid_argument for another pixel type.
   std::vector<vision::Detection> detect(const cv::Mat& color_bgr);
-  /// The same on the image turned clockwise by `roll_rad` (CameraRoll); the boxes are axis-parallel in the image as it
-  /// was given (UprightView). A roll of 0 is detect().
-  std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
 
   /// The boxes of several images at once, in their order; the same as detect() of each. More than one image needs a
   /// network whose batch is free: throws std::invalid_argument that names the tool which frees it.
@@ -43,7 +40,6 @@ class Detector {
 
  private:
   using BoxInFrame = std::function<cv::Rect2f(const Candidate&)>;
-  std::vector<vision::Detection> find_in_blob(const BoxInFrame& box_of);
   std::vector<vision::Detection> boxes_of(int image, const BoxInFrame& box_of) const;
 
   std::unique_ptr<Network> network_;

@@ -43,7 +43,6 @@ struct DetectorConfig {
   int threads = 1;
   std::string engine = "auto";  ///< parse_engine()
   std::string onnxruntime;      ///< library that "auto" may load; empty: none
-  std::string kernel_cache;     ///< folder for what an OpenCL driver compiles; empty: none
   std::vector<std::string> class_names;
   std::vector<HeadLayout> heads;  ///< YOLOv5; empty: those in the file, else as published
 

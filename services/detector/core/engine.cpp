@@ -3,14 +3,8 @@
 #include "services/detector/core/engine.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <cstddef>
-#include <cstdlib>
-#include <filesystem>
 #include <opencv2/core.hpp>
-#include <opencv2/core/ocl.hpp>
-#include <optional>
 #include <utility>
 
 #include "common/msg/engine_names.hpp"
@@ -21,79 +15,7 @@ namespace {
 
 using Kind = EngineChoice::Kind;
 
-constexpr std::string_view kOpenClPrefix = "opencl:", kOnnxRuntimePrefix = "onnxruntime:";
-
-struct FoundDevice {
-  std::string name;
-  cv::ocl::Device device;
-  bool gpu = false;
-};
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-std::vector<FoundDevice> find_devices() {
-  std::vector<FoundDevice> found;
-  std::vector<cv::ocl::PlatformInfo> platforms;
-  if (!cv::ocl::haveOpenCL()) return found;
-  cv::ocl::getPlatfomsInfo(platforms);
-  for (const cv::ocl::PlatformInfo& platform : platforms) {
-    for (int i = 0; i < platform.deviceNumber(); ++i) {
-      cv::ocl::Device device;
-      platform.getDevice(device, i);
-      const bool gpu = (device.type() & cv::ocl::Device::TYPE_GPU) != 0;
-      found.push_back({device.name(), device, gpu});
-    }
-  }
-  return found;
-}
-
-/// The first device whose name holds what is asked for; GPUs first.
-std::optional<FoundDevice> choose_device(const std::string& wanted, bool gpu_only) {
-  std::vector<FoundDevice> devices = find_devices();
-  std::ranges::stable_partition(devices, &FoundDevice::gpu);
-  for (const FoundDevice& device : devices) {
-    const bool named = lower(device.name).find(lower(wanted)) != std::string::npos;
-    if (named && (device.gpu || !gpu_only)) return device;
-  }
-  return std::nullopt;
-}
-
-std::string names_of(const std::vector<std::string>& devices) {
-  std::string text;
-  for (const std::string& device : devices) text += (text.empty() ? "" : ", ") + device;
-  return text;
-}
-
-/// Compiling and tuning for a device takes minutes. OpenCV reads these before it first compiles.
-void keep_kernels(const std::string& folder) {
-  if (folder.empty()) return;
-  std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
-  setenv("OPENCV_OCL4DNN_CONFIG_PATH", folder.c_str(), 0);
-  setenv("OPENCV_OPENCL_CACHE_DIR", folder.c_str(), 0);
-}
-
-std::unique_ptr<Engine> make_opencl(const FoundDevice& found, const EngineModel& model) {
-  const auto refuse = [&](const std::string& cause) {
-    return EngineError("OpenCL device " + found.name + " cannot be used: " + cause);
-  };
-  if (!found.device.isIntel() && std::getenv(kAllowAllDevices) == nullptr)
-    throw refuse(std::string("set ") + kAllowAllDevices + "=1 before the program starts");
-  keep_kernels(model.kernel_cache);
-  cv::ocl::OpenCLExecutionContext opencl;
-  try {
-    const cv::ocl::Context context = cv::ocl::Context::fromDevice(found.device);
-    opencl = cv::ocl::OpenCLExecutionContext::create(context, context.device(0));
-  } catch (const cv::Exception& error) {
-    throw refuse(error.err);
-  }
-  const cv::ocl::OpenCLExecutionContextScope scope(opencl);
-  if (!cv::ocl::useOpenCL()) throw refuse("OpenCV does not use it");
-  return make_opencv_engine(model, found.name + " (OpenCL, OpenCV DNN)", opencl);
-}
+constexpr std::string_view kOnnxRuntimePrefix = "onnxruntime:";
 
 /// "/opt/lib/libonnxruntime.so@cuda:1", taken apart.
 EngineChoice onnxruntime_choice(const std::string& text) {
@@ -106,22 +28,7 @@ EngineChoice onnxruntime_choice(const std::string& text) {
   return choice;
 }
 
-EngineError no_opencl_device(const std::string& wanted) {
-  const std::vector<std::string> there = opencl_devices();
-  return EngineError("there is no OpenCL device" + (wanted.empty() ? std::string() : " '" + wanted + "'") +
-                     (there.empty() ? ": install the OpenCL driver of the GPU (`clinfo` lists devices)"
-                                    : "; there are: " + names_of(there)));
-}
-
-/// A GPU's driver needs the file of its kernel module. To look for OpenCL devices loads all drivers of the host: one
-/// for the CPU takes 60 MB, and half of the detector's start.
-bool may_have_gpu() {
-  constexpr std::array kFiles{"/dev/dri", "/dev/nvidiactl", "/dev/kfd", "/dev/mali0", "/dev/kgsl-3d0", "/dev/dxg"};
-  std::error_code unreadable;
-  return std::ranges::any_of(kFiles, [&](const char* file) { return std::filesystem::exists(file, unreadable); });
-}
-
-/// ONNX Runtime where it works, else OpenCL on a GPU, else the CPU with the cause in its name.
+/// ONNX Runtime where it works, else OpenCV with the cause in its name.
 std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const EngineModel& model) {
   std::string cause;
   if (!onnxruntime.empty() && knows_onnxruntime()) {
@@ -131,8 +38,7 @@ std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const E
       cause = error.what();
     }
   }
-  if (const auto gpu = may_have_gpu() ? choose_device({}, true) : std::nullopt) return make_opencl(*gpu, model);
-  return make_opencv_engine(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause), std::nullopt);
+  return make_opencv_engine(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause));
 }
 
 /// The images [first, first + count) of a blob.
@@ -207,8 +113,6 @@ std::span<const float> RawOutput::of(int image) const {
 EngineChoice parse_engine(const std::string& text) {
   if (text == "auto") return {Kind::kAuto, {}};
   if (text == "cpu") return {Kind::kCpu, {}};
-  if (text == "opencl") return {Kind::kOpenCl, {}};
-  if (text.starts_with(kOpenClPrefix)) return {Kind::kOpenCl, text.substr(kOpenClPrefix.size())};
   if (text == "onnxruntime") return onnxruntime_choice({});
   if (text.starts_with(kOnnxRuntimePrefix)) return onnxruntime_choice(text.substr(kOnnxRuntimePrefix.size()));
   throw EngineError("'" + text + "' is not an engine: use " + msg::kEngineNames);
@@ -226,19 +130,10 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineMode
       return make_best_engine(choice.library, model);
     case Kind::kOnnxRuntime:
       return halve_when_full(make_onnxruntime_engine(model, choice.library, choice.device));
-    case Kind::kOpenCl:
-      if (const auto device = choose_device(choice.device, false)) return make_opencl(*device, model);
-      throw no_opencl_device(choice.device);
     case Kind::kCpu:
       break;
   }
-  return make_opencv_engine(model, kCpuDevice, std::nullopt);
-}
-
-std::vector<std::string> opencl_devices() {
-  std::vector<std::string> names;
-  for (const FoundDevice& device : find_devices()) names.push_back(device.name + (device.gpu ? " (GPU)" : " (CPU)"));
-  return names;
+  return make_opencv_engine(model, kCpuDevice);
 }
 
 std::unique_ptr<Engine> halve_when_full(std::unique_ptr<Engine> engine) {

@@ -13,10 +13,6 @@
 /// What computes a network. Knows neither DDS nor classes, boxes or anchors.
 namespace rtd::detector {
 
-/// OpenCV's DNN module takes only Intel's GPUs unless this variable is 1 in the environment that the program starts
-/// with: its library reads it when it is loaded.
-inline constexpr const char* kAllowAllDevices = "OPENCV_DNN_OPENCL_ALLOW_ALL_DEVICES";
-
 /// An engine or its device is not there; what() says why and what would help.
 class EngineError : public std::runtime_error {
  public:
@@ -32,18 +28,16 @@ class OutOfDeviceMemory : public EngineError {
 /// Which engine is asked for.
 struct EngineChoice {
   enum class Kind {
-    kAuto,    ///< ONNX Runtime where its library is known and works, else OpenCL on a GPU, else the CPU
-    kCpu,     ///< OpenCV DNN
-    kOpenCl,  ///< OpenCV DNN, any OpenCL device
+    kAuto,  ///< ONNX Runtime where its library is known and works, else as kCpu
+    kCpu,   ///< OpenCV DNN
     kOnnxRuntime,
   };
   Kind kind = Kind::kCpu;
-  /// OpenCL: part of the device's name; empty: the first one. ONNX Runtime: "cpu", "cuda", "cuda:1".
-  std::string device;
+  std::string device;   ///< ONNX Runtime's: "cpu", "cuda", "cuda:1"
   std::string library;  ///< ONNX Runtime's; auto: empty without one
 };
 
-/// "auto", "cpu", "opencl", "opencl:DEVICE", "onnxruntime:LIBRARY" or "onnxruntime:LIBRARY@DEVICE"
+/// "auto", "cpu", "onnxruntime:LIBRARY" or "onnxruntime:LIBRARY@DEVICE"
 /// (common/msg/engine_names.hpp). Throws EngineError naming these.
 EngineChoice parse_engine(const std::string& text);
 
@@ -60,9 +54,8 @@ struct GatedOutput {
 /// A network as an engine takes it.
 struct EngineModel {
   std::span<const std::uint8_t> onnx;
-  GatedOutput gated;         ///< outputs of exactly so many planes; 0: none
-  int threads = 1;           ///< of the CPU
-  std::string kernel_cache;  ///< folder where OpenCL keeps what it has compiled and tuned; empty: none
+  GatedOutput gated;  ///< outputs of exactly so many planes; 0: none
+  int threads = 1;    ///< of the CPU
 };
 
 /// One output for all images: a tensor of floats, row-major, whose first dimension is the image.
@@ -82,7 +75,7 @@ inline constexpr const char* kCpuDevice = "CPU (OpenCV DNN)";
 class Engine {
  public:
   virtual ~Engine() = default;
-  /// "CPU (OpenCV DNN)", "pthread-cpu (OpenCL, OpenCV DNN)": for people.
+  /// "CPU (OpenCV DNN)", "cuda:0 (ONNX Runtime 1.18.0)": for people.
   virtual const std::string& device() const = 0;
   /// Outputs of the network.
   virtual std::size_t outputs() const = 0;
@@ -98,9 +91,6 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineMode
 
 /// The engine with its batches halved as often as its device needs it (OutOfDeviceMemory).
 std::unique_ptr<Engine> halve_when_full(std::unique_ptr<Engine> engine);
-
-/// The OpenCL devices of this host, with what they are: "NVIDIA H200 (GPU)"; empty without a driver.
-std::vector<std::string> opencl_devices();
 
 /// Whether this program was built with ONNX Runtime's C API.
 bool knows_onnxruntime();

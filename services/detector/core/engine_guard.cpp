@@ -59,37 +59,19 @@ void AgreementCount::add(const std::string& difference) {
   if (first_difference.empty()) first_difference = difference;
 }
 
-EngineGuard::EngineGuard(DetectorConfig config, bool verify) : on_cpu_(config) {
+EngineGuard::EngineGuard(DetectorConfig config) : on_cpu_(config) {
   static_cast<void>(parse_engine(config.engine));
   on_cpu_.engine = "cpu";
   try {
     detector_ = std::make_unique<Detector>(std::move(config));
   } catch (const EngineError& error) {
     fall_back(error.what());
-    return;
   }
-  const bool same = detector_->device().starts_with(kCpuDevice);
-  if (verify && !same) reference_ = std::make_unique<Detector>(on_cpu_);
 }
 
 void EngineGuard::fall_back(const std::string& cause) {
   fallback_ = cause;
-  detector_ = reference_ ? std::move(reference_) : std::make_unique<Detector>(on_cpu_);
-}
-
-std::vector<vision::Detection> EngineGuard::detect_upright(const cv::Mat& color_bgr, double roll_rad) {
-  std::vector<vision::Detection> found = detector_->detect_upright(color_bgr, roll_rad);
-  if (!reference_) return found;
-  std::vector<vision::Detection> expected = reference_->detect_upright(color_bgr, roll_rad);
-  return agrees(expected, found) ? found : expected;
-}
-
-std::vector<std::vector<vision::Detection>> EngineGuard::detect_batch(std::span<const cv::Mat> images) {
-  const std::vector<std::vector<vision::Detection>> found = detector_->detect_batch(images);
-  for (std::size_t i = 0; i < images.size() && reference_; ++i) {
-    if (!agrees(reference_->detect(images[i]), found[i])) return detector_->detect_batch(images);  // now on the CPU
-  }
-  return found;
+  detector_ = std::make_unique<Detector>(on_cpu_);
 }
 
 void EngineGuard::warm_up(std::span<const cv::Mat> images) {
@@ -98,17 +80,6 @@ void EngineGuard::warm_up(std::span<const cv::Mat> images) {
   } catch (const EngineError& error) {
     fall_back(error.what());
   }
-}
-
-/// Falls back when they differ; ends the comparison after the last image.
-bool EngineGuard::agrees(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& found) {
-  const std::string cause = disagreement(expected, found, on_cpu_.decode.confidence_threshold);
-  if (!cause.empty()) {
-    fall_back(detector_->device() + " does not agree with the CPU: " + cause);
-    return false;
-  }
-  if (++verified_ == kVerifiedImages) reference_.reset();
-  return true;
 }
 
 }  // namespace rtd::detector

@@ -33,18 +33,16 @@ struct AgreementCount {
   void add(const std::string& difference);
 };
 
-/// A detector that continues with the CPU when the engine asked for is not there or, where it is verified, computes
-/// something else. Not thread-safe.
+/// A detector that continues with the CPU when the engine asked for is not there. Not thread-safe.
 class EngineGuard {
  public:
-  /// `verify`: the first kVerifiedImages are computed on the CPU too and compared (disagreement()). Throws ModelError;
-  /// EngineError only for an engine whose name is wrong.
-  EngineGuard(DetectorConfig config, bool verify);
+  /// Throws ModelError; EngineError only for an engine whose name is wrong.
+  explicit EngineGuard(DetectorConfig config);
 
-  /// As Detector::detect_upright(), but loads the network again when a disagreement is found.
-  std::vector<vision::Detection> detect_upright(const cv::Mat& color_bgr, double roll_rad);
-  /// As Detector::detect_batch(), verified in the same way.
-  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
+  std::vector<vision::Detection> detect(const cv::Mat& color_bgr) { return detector_->detect(color_bgr); }
+  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images) {
+    return detector_->detect_batch(images);
+  }
 
   /// Runs a batch that compiles what its size needs. Throws std::invalid_argument as Detector::detect_batch() does;
   /// falls back when the engine fails.
@@ -53,19 +51,13 @@ class EngineGuard {
   const Detector& detector() const { return *detector_; }
   /// Why the CPU is used in place of the engine asked for; empty while it is not.
   const std::string& fallback() const { return fallback_; }
-  /// Images on which both have agreed.
-  int verified() const { return verified_; }
-
-  static constexpr int kVerifiedImages = 10;
 
  private:
   void fall_back(const std::string& cause);
-  bool agrees(const std::vector<vision::Detection>& expected, const std::vector<vision::Detection>& found);
 
   DetectorConfig on_cpu_;
-  std::unique_ptr<Detector> detector_, reference_;  ///< reference_: null when nothing (more) is verified
+  std::unique_ptr<Detector> detector_;
   std::string fallback_;
-  int verified_ = 0;
 };
 
 }  // namespace rtd::detector

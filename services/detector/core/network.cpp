@@ -80,10 +80,8 @@ void Network::load() {
   const int class_count = static_cast<int>(config_.class_names.size());
   EngineChoice engine = parse_engine(config_.engine);
   if (engine.kind == EngineChoice::Kind::kAuto) engine.library = config_.onnxruntime;
-  engine_ = make_engine(engine, {.onnx = bytes,
-                                 .gated = yolov5_gate(class_count, config_.decode),
-                                 .threads = config_.threads,
-                                 .kernel_cache = config_.kernel_cache});
+  engine_ = make_engine(engine,
+                        {.onnx = bytes, .gated = yolov5_gate(class_count, config_.decode), .threads = config_.threads});
 }
 
 /// What is not configured comes from the file's metadata, else from the families' defaults.

@@ -37,14 +37,6 @@ void split_channels(const cv::Mat& color_bgr, const Letterbox& letterbox, InputS
   }
 }
 
-/// Maps pixel indices of the frame to those of the input; pixel i covers i .. i + 1.
-cv::Matx23d to_input(const UprightView& view) {
-  const double c = view.scale * view.cos, s = view.scale * view.sin;
-  const double from_x = 0.5 - 0.5 * view.frame.width, from_y = 0.5 - 0.5 * view.frame.height;
-  const double to_x = 0.5 * view.input.width_px - 0.5, to_y = 0.5 * view.input.height_px - 0.5;
-  return {c, -s, c * from_x - s * from_y + to_x, s, c, s * from_x + c * from_y + to_y};
-}
-
 }  // namespace
 
 Letterbox fit_letterbox(cv::Size frame, InputSize input) {
@@ -71,34 +63,15 @@ void fill_blob(const cv::Mat& color_bgr, const Letterbox& letterbox, InputSize i
   split_channels(scaled, letterbox, input, pixels, blob.ptr<float>());
 }
 
-UprightView fit_upright(cv::Size frame, InputSize input, double roll_rad) {
-  UprightView view{std::cos(roll_rad), std::sin(roll_rad), 1, frame, input};
-  const double c = std::abs(view.cos), s = std::abs(view.sin);
-  const double hull_width_px = c * frame.width + s * frame.height, hull_height_px = s * frame.width + c * frame.height;
-  view.scale = std::min(input.width_px / hull_width_px, input.height_px / hull_height_px);
-  return view;
-}
-
-void fill_upright_blob(const cv::Mat& color_bgr, const UprightView& view, const PixelFormat& pixels, cv::Mat& blob) {
-  const cv::Size size(view.input.width_px, view.input.height_px);
-  cv::Mat upright;
-  cv::warpAffine(color_bgr, upright, to_input(view), size, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
-                 cv::Scalar::all(kGreyLevel));
-  fill_blob(upright, fit_letterbox(size, view.input), view.input, pixels, blob);
-}
-
-cv::Rect2f box_in_frame(const Candidate& candidate, const UprightView& view) {
-  const double x = 0.5 * (candidate.left_px + candidate.right_px - view.input.width_px) / view.scale;
-  const double y = 0.5 * (candidate.top_px + candidate.bottom_px - view.input.height_px) / view.scale;
-  const double a = 0.5 * (candidate.right_px - candidate.left_px) / view.scale;
-  const double b = 0.5 * (candidate.bottom_px - candidate.top_px) / view.scale;
-  const double centre_x = 0.5 * view.frame.width + view.cos * x + view.sin * y;
-  const double centre_y = 0.5 * view.frame.height - view.sin * x + view.cos * y;
-  const double half_width = std::hypot(a * view.cos, b * view.sin),
-               half_height = std::hypot(a * view.sin, b * view.cos);
-  const auto clip = [](double value, int size) { return static_cast<float>(std::clamp(value, 0.0, double(size))); };
-  return {cv::Point2f(clip(centre_x - half_width, view.frame.width), clip(centre_y - half_height, view.frame.height)),
-          cv::Point2f(clip(centre_x + half_width, view.frame.width), clip(centre_y + half_height, view.frame.height))};
+cv::Rect2f box_in_frame(const Candidate& candidate, const Letterbox& letterbox, cv::Size frame) {
+  const auto to_x_px = [&](float x_px) {
+    return static_cast<float>(std::clamp((x_px - letterbox.pad_left_px) / letterbox.scale_x, 0.0, double(frame.width)));
+  };
+  const auto to_y_px = [&](float y_px) {
+    return static_cast<float>(std::clamp((y_px - letterbox.pad_top_px) / letterbox.scale_y, 0.0, double(frame.height)));
+  };
+  const float left_px = to_x_px(candidate.left_px), top_px = to_y_px(candidate.top_px);
+  return {left_px, top_px, to_x_px(candidate.right_px) - left_px, to_y_px(candidate.bottom_px) - top_px};
 }
 
 }  // namespace rtd::detector

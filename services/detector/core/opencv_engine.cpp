@@ -24,12 +24,11 @@ bool is_pointwise(const cv::dnn::ConvolutionLayer& convolution) {
 
 class OpencvEngine final : public Engine {
  public:
-  OpencvEngine(const EngineModel& model, std::string device, std::optional<cv::ocl::OpenCLExecutionContext> opencl)
-      : gated_(model.gated), device_(std::move(device)), opencl_(std::move(opencl)) {
+  OpencvEngine(const EngineModel& model, std::string device) : gated_(model.gated), device_(std::move(device)) {
     const FastSigmoidScope fast_sigmoid;
     net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(model.onnx.data()), model.onnx.size());
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net_.setPreferableTarget(opencl_ ? cv::dnn::DNN_TARGET_OPENCL : cv::dnn::DNN_TARGET_CPU);
+    net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     for (const cv::String& name : net_.getUnconnectedOutLayersNames()) branches_.push_back(branch_of(name));
     for (const Branch& branch : branches_) layer_names_.push_back(branch.layer);
   }
@@ -37,8 +36,6 @@ class OpencvEngine final : public Engine {
   const std::string& device() const override { return device_; }
   std::size_t outputs() const override { return branches_.size(); }
   const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
-    std::optional<cv::ocl::OpenCLExecutionContextScope> device_scope;  // of this thread
-    if (opencl_) device_scope.emplace(*opencl_);
     net_.setInput(blob);
     net_.forward(mats_, layer_names_);
     tensors_.clear();
@@ -97,7 +94,6 @@ class OpencvEngine final : public Engine {
 
   const GatedOutput gated_;
   const std::string device_;
-  const std::optional<cv::ocl::OpenCLExecutionContext> opencl_;
   cv::dnn::Net net_;
   std::vector<Branch> branches_;
   std::vector<cv::String> layer_names_;
@@ -162,9 +158,8 @@ void PointwiseHead::evaluate_cell(const float* features, std::size_t cells, std:
   }
 }
 
-std::unique_ptr<Engine> make_opencv_engine(const EngineModel& model, std::string device,
-                                           std::optional<cv::ocl::OpenCLExecutionContext> opencl) {
-  return std::make_unique<OpencvEngine>(model, std::move(device), std::move(opencl));
+std::unique_ptr<Engine> make_opencv_engine(const EngineModel& model, std::string device) {
+  return std::make_unique<OpencvEngine>(model, std::move(device));
 }
 
 }  // namespace rtd::detector

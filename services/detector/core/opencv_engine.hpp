@@ -4,8 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <opencv2/core/ocl.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +35,7 @@ class PointwiseHead {
   std::vector<float> weights_;  ///< group, channel, plane: the planes of a cell are summed side by side
 };
 
-/// OpenCV's DNN module on the CPU, or on an OpenCL device where `opencl` is given. Throws cv::Exception.
-std::unique_ptr<Engine> make_opencv_engine(const EngineModel& model, std::string device,
-                                           std::optional<cv::ocl::OpenCLExecutionContext> opencl);
+/// OpenCV's DNN module on the CPU; `device` names it for people. Throws cv::Exception.
+std::unique_ptr<Engine> make_opencv_engine(const EngineModel& model, std::string device);
 
 }  // namespace rtd::detector

@@ -45,7 +45,7 @@ LoadedNetwork load(const MaskConfig& config) {
   if (engine.kind == EngineChoice::Kind::kAuto) engine.library = config.onnxruntime;
   const QuietOpenCv quiet;
   try {
-    const EngineModel model{.onnx = bytes, .gated = {}, .threads = config.threads, .kernel_cache = config.kernel_cache};
+    const EngineModel model{.onnx = bytes, .gated = {}, .threads = config.threads};
     return {make_engine(engine, model), *file.input};
   } catch (const cv::Exception& error) {
     name.refuse("is broken or not understood by OpenCV (" + std::string(error.err) + ")");
@@ -74,20 +74,10 @@ cv::Rect2d grown(const cv::Rect2d& box, double share) {
           (1 + 2 * share) * box.height};
 }
 
-/// The upright rectangle around a box that is turned about its centre by `roll_rad`, and the turn before it.
-std::pair<cv::Matx23d, cv::Rect2d> upright(const cv::Rect2d& box, double roll_rad) {
-  const double c = std::cos(roll_rad), s = std::sin(roll_rad), x = box.x + box.width / 2, y = box.y + box.height / 2;
-  const double width = std::abs(c) * box.width + std::abs(s) * box.height,
-               height = std::abs(s) * box.width + std::abs(c) * box.height;
-  return {{c, -s, x - c * x + s * y, s, c, y - s * x - c * y}, {x - width / 2, y - height / 2, width, height}};
-}
-
 /// Maps pixels of the image (edges, as boxes) to those of the network's input.
-cv::Matx23d map_to_input(const cv::Rect2d& box, double growth, double roll_rad, cv::Size image, InputSize input) {
+cv::Matx23d map_to_input(const cv::Rect2d& box, double growth, cv::Size image, InputSize input) {
   const cv::Rect2d whole(0, 0, image.width, image.height), to(0, 0, input.width_px, input.height_px);
-  if (roll_rad == 0) return stretch(grown(box, growth) & whole, to);
-  const auto [turn, area] = upright(grown(box, growth), roll_rad);
-  return chain(stretch(area, to), turn);
+  return stretch(grown(box, growth) & whole, to);
 }
 
 /// The same map for indices of pixels: pixel i covers i to i + 1.
@@ -133,7 +123,7 @@ PersonSegmenter::PersonSegmenter(MaskConfig config, std::unique_ptr<Engine> engi
 }
 
 vision::PersonMasks PersonSegmenter::segment(const cv::Mat& color_bgr, const std::vector<vision::Detection>& detections,
-                                             int fresh_at_most, double roll_rad) {
+                                             int fresh_at_most) {
   if (!color_bgr.empty() && color_bgr.type() != CV_8UC3)
     throw std::invalid_argument("masks: image type " + cv::typeToString(color_bgr.type()) + " is not 8-bit BGR");
   std::vector<Mask> people;
@@ -145,7 +135,7 @@ vision::PersonMasks PersonSegmenter::segment(const cv::Mat& color_bgr, const std
     return mask->probability.empty() ? std::numeric_limits<int>::max() : mask->age;
   });
   waiting.resize(std::min(waiting.size(), static_cast<std::size_t>(std::max(0, fresh_at_most))));
-  for (Mask* mask : waiting) compute(*mask, color_bgr, roll_rad);
+  for (Mask* mask : waiting) compute(*mask, color_bgr);
   std::erase_if(people, [](const Mask& mask) { return mask.probability.empty(); });
   last_ = std::move(people);
   if (last_.empty()) return {};
@@ -186,9 +176,9 @@ void PersonSegmenter::take_from_last(Mask& mask) const {
   mask.age = best->age + 1;
 }
 
-void PersonSegmenter::compute(Mask& mask, const cv::Mat& color_bgr, double roll_rad) {
+void PersonSegmenter::compute(Mask& mask, const cv::Mat& color_bgr) {
   const cv::Size size(input_.width_px, input_.height_px);
-  mask.to_input = map_to_input(mask.box_px, config_.growth, roll_rad, color_bgr.size(), input_);
+  mask.to_input = map_to_input(mask.box_px, config_.growth, color_bgr.size(), input_);
   cv::warpAffine(color_bgr, crop_, of_indices(mask.to_input), size, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
   fill_blob(crop_, fit_letterbox(size, input_), input_, PixelFormat{}, blob_);
   const float* const values = engine_->infer(blob_).front().of(0).data();

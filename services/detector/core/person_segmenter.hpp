@@ -20,7 +20,6 @@ struct MaskConfig {
   std::string model_path;       ///< ONNX file: N x 3 x H x W, RGB, 0 to 1, to N x 1 x H x W, probability of a person
   std::string engine = "auto";  ///< parse_engine(), as the detector's
   std::string onnxruntime;      ///< library that "auto" may load; empty: none
-  std::string kernel_cache;     ///< folder for what an OpenCL driver compiles; empty: none
   int threads = 1;              ///< CPU threads of ONNX Runtime; OpenCV's are set by the Detector
   int masks_per_frame = 4;
   double threshold = 0.5;
@@ -48,10 +47,9 @@ class PersonSegmenter {
   /// `color_bgr`: 8-bit BGR; empty: no masks.
   /// `fresh_at_most`: so many masks are computed, first of who has none yet, then of who waits longest; others are
   /// those of the last call, moved and scaled with their box. From masks_per_frame on the result depends on this frame
-  /// alone. `roll_rad`: by how much the image must be turned clockwise for people to stand upright (CameraRoll). Throws
-  /// std::invalid_argument for another pixel type; EngineError and cv::Exception when the engine fails.
+  /// alone. Throws std::invalid_argument for another pixel type; EngineError and cv::Exception when the engine fails.
   vision::PersonMasks segment(const cv::Mat& color_bgr, const std::vector<vision::Detection>& detections,
-                              int fresh_at_most, double roll_rad = 0);
+                              int fresh_at_most);
 
   /// What computes the network, for people.
   const std::string& device() const { return engine_->device(); }
@@ -68,7 +66,7 @@ class PersonSegmenter {
 
   std::vector<Mask> largest_people(const std::vector<vision::Detection>& detections) const;
   void take_from_last(Mask& mask) const;
-  void compute(Mask& mask, const cv::Mat& color_bgr, double roll_rad);
+  void compute(Mask& mask, const cv::Mat& color_bgr);
   void label(const Mask& mask, vision::PersonMasks& masks, std::vector<float>& best) const;
 
   MaskConfig config_;

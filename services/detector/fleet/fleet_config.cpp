@@ -28,7 +28,6 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
   };
   refuse(runtime.pace != service::Pace::kRealtime,
          "several robots are served at pace realtime; run one detector for each robot at asap or lockstep");
-  refuse(config.derotate == "on", "detector.derotate follows the poses of one robot: leave it off");
   refuse(config.input == "frame", "raw frames never leave their host: leave detector.input at auto or jpeg");
   refuse(config.masks.use == "on", "they get boxes alone: leave detector.masks (--masks) at auto or off");
   refuse(config.max_rate_hz > 0, "detector.max_rate_hz (--max-rate) is for one robot: leave it at 0");
@@ -37,7 +36,7 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
 
 }  // namespace
 
-BatchDetector::BatchDetector(DetectorConfig config, int batch, bool verify) : guard_(std::move(config), verify) {
+BatchDetector::BatchDetector(DetectorConfig config, int batch) : guard_(std::move(config)) {
   if (batch > 1) try_batches(batch);
 }
 
@@ -57,7 +56,7 @@ void BatchDetector::try_batches(int most) {
 std::vector<std::vector<vision::Detection>> BatchDetector::detect(std::span<const cv::Mat> images) {
   if (no_batch_.empty()) return guard_.detect_batch(images);
   std::vector<std::vector<vision::Detection>> found;
-  for (const cv::Mat& image : images) found.push_back(guard_.detect_upright(image, 0));
+  for (const cv::Mat& image : images) found.push_back(guard_.detect(image));
   return found;
 }
 
@@ -93,7 +92,7 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
 
 Inference load_inference(const ServiceConfig& config) {
   try {
-    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch, config.verify_engine);
+    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
     const Detector& loaded = detector->guard().detector();
     const InputSize input = loaded.input_size();
     SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"", loaded.config().model_path,

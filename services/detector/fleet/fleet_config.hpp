@@ -22,9 +22,9 @@ namespace rtd::detector {
 class BatchDetector {
  public:
   /// Runs a first batch of each size up to `batch`, so that later ones are as fast as the others; on the CPU, where
-  /// nothing is compiled for a size, only the largest. `verify`: as for EngineGuard. Throws ModelError; EngineError
-  /// only for an engine whose name is wrong.
-  BatchDetector(DetectorConfig config, int batch, bool verify = false);
+  /// nothing is compiled for a size, only the largest. Throws ModelError; EngineError only for an engine whose name is
+  /// wrong.
+  BatchDetector(DetectorConfig config, int batch);
 
   /// The boxes of each image, in the order of the images, as Detector::detect_batch().
   std::vector<std::vector<vision::Detection>> detect(std::span<const cv::Mat> images);

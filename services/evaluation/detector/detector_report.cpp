@@ -257,7 +257,6 @@ json to_json(const MaskResults& results) {
   for (const MaskResult& result : results.models) {
     json entry = model_json(result.model);
     entry["as_seen"] = recall_json(result.as_seen);
-    entry["upright"] = recall_json(result.upright);
     if (!result.overlap.empty()) entry["masks"] = overlap_json(result.overlap);
     document["models"].push_back(entry);
   }
@@ -273,7 +272,6 @@ std::string to_table(const MaskResults& results) {
                                  "pixel recall", "images complete", "people", "boxes", "beside");
   for (const MaskResult& result : results.models) {
     text += recall_rows(result.model.title(), result.as_seen);
-    text += recall_rows(result.model.title() + " upright", result.upright);
   }
   return text +
          "images complete: every marked area (400 px or more) has half of its pixels in boxes; beside: boxes on "
@@ -316,11 +314,10 @@ Svg to_plot(const MaskResults& results) {
   std::vector<double> rolls_deg;
   for (const auto& [roll_deg, recall] : results.models.front().as_seen) rolls_deg.push_back(roll_deg);
   Chart chart(svg, kArea, plot::range_of(rolls_deg), {0, 1});
-  chart.draw_axes({"roll [deg] (dashed: as the camera sees it, solid: turned upright)", "pixel recall"});
+  chart.draw_axes({"roll [deg]", "pixel recall"});
   draw_model_legend(svg, results);
   for (std::size_t i = 0; i < results.models.size(); ++i) {
-    draw_roll_curve(chart, results.models[i].as_seen, {colour_of(i), 2, "5 4"});
-    draw_roll_curve(chart, results.models[i].upright, {colour_of(i), 2});
+    draw_roll_curve(chart, results.models[i].as_seen, {colour_of(i), 2});
   }
   return svg;
 }

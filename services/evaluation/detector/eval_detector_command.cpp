@@ -72,7 +72,6 @@ void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
   command.add_option_function<std::string>(
       "--roll", [&options](const std::string& text) { options.roll = parse_roll(text); },
       "Masks: turn image and mask, degrees FROM:TO:STEP, e.g. 0:180:15");
-  command.add_flag("--derotate", options.derotate, "Masks: also detect on the image turned upright by the true roll");
 }
 
 }  // namespace

@@ -34,7 +34,6 @@ struct EvalDetectorOptions {
   bool dark_masks = false;                     ///< objects are black in the masks
   std::vector<double> thresholds;              ///< for the masks; add_eval_detector_command() sets the detector's own
   RollRange roll;
-  bool derotate = false;  ///< masks: also with the image turned upright by the true roll
 };
 
 /// Adds the subcommand `detector` to `parent`; parsing fills `options`, which must outlive `parent`.

@@ -289,13 +289,10 @@ MaskResults evaluate_masks(const EvalDetectorOptions& options, std::ostream& err
     ++results.input.images;
     for (const double roll_deg : angles_deg) {
       const MaskedImage seen = rolled(*pair, roll_deg);
-      const double roll_rad = roll_deg * std::numbers::pi / 180;
       for (std::size_t m = 0; m < models.size(); ++m) {
         const std::vector<vision::Detection> found = models[m].detect(seen.image);
         add_recall(seen, found, options, results.models[m].as_seen[roll_deg]);
         if (segmenter) add_overlap(seen, found, options, *segmenter, results.models[m].overlap[roll_deg]);
-        if (!options.derotate) continue;
-        add_recall(seen, models[m].detect(seen.image, roll_rad), options, results.models[m].upright[roll_deg]);
       }
     }
   }

@@ -12,7 +12,6 @@
 
 #include "services/detector/core/engine_guard.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
-#include "services/evaluation/core/detection/mask_overlap.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"
 
@@ -44,7 +43,7 @@ struct LabelledResults {
 using RecallByRoll = std::map<double, std::map<double, MaskRecall>>;
 struct MaskResult {
   ModelFacts model;
-  RecallByRoll as_seen, upright;          ///< upright: de-rotated by the true roll; empty without --derotate
+  RecallByRoll as_seen;
   std::map<double, MaskOverlap> overlap;  ///< by roll: boxes as seen, lowest confidence; empty without --mask-model
 };
 struct MaskResults {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All threads: OpenCL computes in threads of their own.
+/// All threads: an engine may have its own.
 double process_cpu_ms() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -65,8 +65,8 @@ ModelUnderTest::ModelUnderTest(const detector::DetectorConfig& config, double le
   facts_.input_height_px = detector_.input_size().height_px;
 }
 
-std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image, double roll_rad) {
-  return detector_.detect_upright(image, roll_rad);
+std::vector<vision::Detection> ModelUnderTest::detect(const cv::Mat& image) {
+  return detector_.detect(image);
 }
 
 void ModelUnderTest::take_time(const cv::Mat& image) {
@@ -87,7 +87,6 @@ ModelFacts ModelUnderTest::facts() const {
 
 std::vector<ModelUnderTest> load_models(const EvalDetectorOptions& options, double least_score) {
   detector::DetectorConfig config;
-  config.kernel_cache = service::kernel_cache_folder(service::process_environment());
   config.onnxruntime = service::find_onnxruntime();
   if (!options.names_file.empty()) {
     config.class_names = detector::split_lines(io::try_read_file(options.names_file, io::kLabels).value_or(""));
@@ -110,7 +109,6 @@ std::unique_ptr<detector::PersonSegmenter> load_segmenter(const EvalDetectorOpti
   detector::MaskConfig config;
   config.model_path = locate(options.mask_model);
   config.engine = options.engines.front();
-  config.kernel_cache = service::kernel_cache_folder(service::process_environment());
   config.onnxruntime = service::find_onnxruntime();
   return load_or_explain([&] { return std::make_unique<detector::PersonSegmenter>(config); });
 }

@@ -35,7 +35,7 @@ class ModelUnderTest {
   /// when the file is missing or broken, EngineError when the engine or its device is not there.
   ModelUnderTest(const detector::DetectorConfig& config, double least_score);
 
-  std::vector<vision::Detection> detect(const cv::Mat& image, double roll_rad = 0);
+  std::vector<vision::Detection> detect(const cv::Mat& image);
   /// Measures the time of one image with the thresholds of rtd-detector.
   void take_time(const cv::Mat& image);
 

@@ -151,7 +151,6 @@ void check_weights(Findings& findings) {
 
 void check_engines(Findings& findings) {
   std::string text = "detector engines: cpu";
-  for (const std::string& device : detector::opencl_devices()) text += ", opencl:" + device;
   const std::string library = service::find_onnxruntime();
   if (detector::knows_onnxruntime()) text += ", onnxruntime:" + (library.empty() ? "LIBRARY" : library);
   findings.push_back({Verdict::kOk, text});

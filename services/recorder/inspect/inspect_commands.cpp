@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <ostream>
+#include <utility>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
 #include "common/recordings/reader.hpp"
@@ -65,7 +67,9 @@ constexpr char kCompared[] =
 
 geometry::Trajectory read_trajectory(const std::string& path) {
   try {
-    return geometry::read_tum_trajectory(path);
+    geometry::PoseList list = geometry::read_pose_list(std::filesystem::path(path));
+    if (!list.damages.empty()) throw geometry::TrajectoryError(list.damages.front());
+    return std::move(list.poses);
   } catch (const geometry::TrajectoryError& error) {
     throw geometry::TrajectoryError(std::string(error.what()) + "; " + kCompared);
   }

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 
 #include "tests/support/dense/dense_run.hpp"
 #include "tests/support/dense/grid_truth.hpp"
@@ -42,7 +41,7 @@ int main(int argc, char** argv) {
   CLI::App app("RTD-SLAM dense map: ghosts, completeness and times of one source");
   rtd::test_support::DenseOptions options;
   rtd::dense::DenseConfig& map = options.map;
-  std::string ply_file, background_file, pgm_file;
+  std::string ply_file, pgm_file;
   app.add_option("--source", options.source, "source URI")->required();
   app.add_option("--mode", options.front_end.mode, "off, true-mask or a mode of the filter")->capture_default_str();
   app.add_option("--detector", options.front_end.detector.kind, "real, truth, lying, off");
@@ -57,7 +56,6 @@ int main(int argc, char** argv) {
   app.add_option("--carve-sigmas", map.carving.sigmas);
   app.add_option("--min-sightings", map.carving.min_sightings);
   app.add_option("--gate", map.fusion.gate_sigmas);
-  app.add_option("--background", background_file, "write the last frame without what moves here");
   app.add_flag("!--without-masks", options.use_masks, "only slam, not the map, learns what moves");
   app.add_flag("!--without-loops", options.close_loops, "slam closes no loops");
   app.add_option("--ply", ply_file, "write the cloud here");
@@ -84,6 +82,5 @@ int main(int argc, char** argv) {
     std::ofstream file(ply_file, std::ios::binary);
     rtd::dense::write_ply(file, report.cloud);
   }
-  if (!background_file.empty()) cv::imwrite(background_file, report.background);
   return 0;
 }

@@ -3,13 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
-#include <string_view>
 
 #include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/camera/source_schemes.hpp"
-#include "services/detector/core/engine.hpp"
 #include "tests/bench/rtd_bench/detector/detector_command.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"
 #include "tests/bench/rtd_bench/transport/transport_command.hpp"
@@ -45,8 +43,6 @@ int run_features(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool detects = argc > 1 && std::string_view(argv[1]) == "detector";
-  if (detects) service::restart_with(detector::kAllowAllDevices, "1", argv);
   Options options;
   CLI::App app{"Measure single parts beside a reference in the same run", "rtd bench"};
   app.require_subcommand(1);

@@ -135,16 +135,9 @@ void add_detector_options(CLI::App& app, rtd::test_support::DetectorOptions& det
       "off; truth: moving pixels of the source in the boxes of people; or the ONNX file of a network for them");
   app.add_option("--remembered-masks", detector.masks_remembered_in,
                  "of a network: file that remembers its answers for this source and its detections");
-  CLI::Option* derotate = app.add_option_function<double>(
-      "--derotate",
-      [&detector](double min_deg) {
-        detector.derotate = rtd::detector::RollConfig{.min_roll_rad = min_deg * rtd::detector::kRadPerDeg};
-      },
-      "real: on the image turned upright, from this roll on (degrees)");
   app.add_option(
-         "--detections", detector.remembered_in,
-         "real and truth: file that remembers the answers for this source, so that the next run need not ask again")
-      ->excludes(derotate);
+      "--detections", detector.remembered_in,
+      "real and truth: file that remembers the answers for this source, so that the next run need not ask again");
   app.add_option_function<std::vector<std::string>>(
       "--detector-outage",
       [&detector](const std::vector<std::string>& spans) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// The other process of the bus tests: bus_peer VENDOR|iceoryx ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
+// The other process of the bus tests: bus_peer VENDOR ROLE DOMAIN [COUNT]. Roles below; runs until SIGTERM.
 #include <signal.h>
 #include <unistd.h>
 
@@ -171,8 +171,7 @@ int run(const std::string& vendor, const std::string& role, std::uint32_t domain
       {"churn_frames", churn_frames}};
   const auto entry = kRoles.find(role);
   BusOptions options;
-  options.iceoryx = vendor == "iceoryx";
-  options.vendor = options.iceoryx ? "cyclonedds" : vendor;
+  options.vendor = vendor;
   options.domain = domain;
   options.participant_name = "bus-peer";
   if (role == "send_large") return send_large_samples(options, count), 0;

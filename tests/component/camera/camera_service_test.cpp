@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
+#include "common/geometry/pose_list.hpp"
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
@@ -473,7 +474,7 @@ TEST_F(CameraServiceTest, limits_frames_and_writes_the_groundtruth) {
   config_.groundtruth_out = (folder_ / "gt.txt").string();
   EXPECT_EQ(run(service::Pace::kLockstep), service::kOk);
   EXPECT_THAT(tracker.seqs(), SizeIs(4));
-  EXPECT_THAT(geometry::read_tum_trajectory(config_.groundtruth_out), SizeIs(4));
+  EXPECT_THAT(geometry::read_pose_list(std::filesystem::path(config_.groundtruth_out)).poses, SizeIs(4));
 }
 
 TEST_F(CameraServiceTest, publishes_the_true_pose_of_each_frame) {

@@ -103,7 +103,6 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   receive(bus::topics::kDensePoints, clouds);
   config_.publish_period_ms = 100;
   config_.out_dir = (folder_ / "run").string();
-  config_.background = true;
   with_filter();
   start();
   send_and_wait(3);
@@ -113,7 +112,6 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   EXPECT_EQ(stop(), service::kOk);
   std::ifstream file(folder_ / "run" / "static_map.ply", std::ios::binary);
   EXPECT_GT(geometry::ply_vertices(file).value_or(0), 5000U);
-  EXPECT_TRUE(std::filesystem::exists(folder_ / "run" / "background.png"));
 }
 
 TEST_F(DenseServiceTest, publishes_a_floor_plan_when_it_changes_and_writes_maps_for_navigation) {

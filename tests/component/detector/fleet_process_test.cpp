@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "tests/component/launcher/rtd_command.hpp"
-#include "tests/support/detector/opencl_here.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/fleet/robot_double.hpp"
 #include "tests/support/test_domain.hpp"
@@ -95,24 +94,12 @@ TEST_F(FleetProcess, computes_one_by_one_with_a_network_that_takes_no_batch_and_
 TEST_F(FleetProcess, continues_on_the_cpu_without_its_engine_and_says_so) {
   const auto anna = robot("anna", 1);
   RtdCommand detector;
-  detector.start(arguments({"--engine", "onnxruntime:/nowhere.so", "--verify-engine"}));
+  detector.start(arguments({"--engine", "onnxruntime:/nowhere.so"}));
   EXPECT_TRUE(anna->wait_answers(30));
   EXPECT_THAT(anna->status()->message, HasSubstr("computes on CPU (OpenCV DNN) in place of the engine asked for: "));
   detector.interrupt();
   EXPECT_EQ(detector.wait(), 0);
   EXPECT_THAT(detector.output(), HasSubstr("event=engine_fallback asked=onnxruntime:/nowhere.so"));
-}
-
-TEST_F(FleetProcess, verifies_its_engine_with_the_first_images) {
-  if (const std::string why = test::opencl_unavailable(); !why.empty()) GTEST_SKIP() << why;
-  const auto anna = robot("anna", 1), ben = robot("ben", 2);
-  RtdCommand detector;
-  detector.start(arguments({"--engine", "opencl", "--verify-engine"}));
-  EXPECT_TRUE(detector.wait_for("event=engine_verified images=10"));
-  EXPECT_TRUE(anna->wait_answers(10));
-  detector.interrupt();
-  EXPECT_EQ(detector.wait(), 0);
-  EXPECT_THAT(detector.output(), Not(HasSubstr("event=engine_fallback")));
 }
 
 TEST_F(FleetProcess, the_second_one_takes_over_within_two_seconds_when_the_first_is_killed) {
@@ -142,7 +129,6 @@ TEST_F(FleetProcess, the_second_one_takes_over_within_two_seconds_when_the_first
 TEST_F(FleetProcess, refuses_what_is_for_one_robot) {
   expect_refused({"--pace", "asap"}, "several robots are served at pace realtime");
   expect_refused({"--pace", "lockstep"}, "several robots are served at pace realtime");
-  expect_refused({"--set", "detector.derotate=on"}, "detector.derotate follows the poses of one robot");
   expect_refused({"--input", "frame"}, "raw frames never leave their host");
   expect_refused({"--max-rate", "5"}, "detector.max_rate_hz (--max-rate) is for one robot");
   expect_refused({"--robot", "anna"}, "--robot names the one robot of a detector");

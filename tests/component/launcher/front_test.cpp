@@ -181,13 +181,6 @@ TEST_F(FrontTest, an_unknown_option_is_named_before_one_that_is_missing) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--sorce"), HasSubstr("did you mean --source")));
 }
 
-TEST_F(FrontTest, config_lists_settings_of_the_services_that_are_installed) {
-  std::ofstream(scratch_ / "rtd-slam") << "#!/bin/sh\necho 'slam:'\necho '  imu:'\necho '    topic: /imu  # (--imu)'\n";
-  fs::permissions(scratch_ / "rtd-slam", fs::perms::owner_all);
-  EXPECT_EQ(rtd_.run({"config"}), 0);
-  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("slam.imu.topic"), HasSubstr("/imu"), HasSubstr("--set KEY=VALUE")));
-}
-
 TEST_F(FrontTest, motion_topics_that_a_recording_does_not_have_are_refused_with_those_it_has) {
   const char* const data = std::getenv("RTD_DATA_DIR");
   const std::string file = std::string(data == nullptr ? "" : data) + "/field/recording_with_imu_and_tf/imu_tf.mcap";

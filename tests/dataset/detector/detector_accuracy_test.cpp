@@ -12,7 +12,6 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
@@ -49,8 +48,8 @@ class DetectorQuality : public ::testing::Test {
     config_.engine = "cpu";
     config_.decode.confidence_threshold = kPersonConfidence;
   }
-  static std::vector<vision::Detection> people(Detector& detector, const cv::Mat& image, double roll_rad = 0) {
-    std::vector<vision::Detection> boxes = detector.detect_upright(image, roll_rad);
+  static std::vector<vision::Detection> people(Detector& detector, const cv::Mat& image) {
+    std::vector<vision::Detection> boxes = detector.detect(image);
     std::erase_if(boxes, [](const vision::Detection& box) { return box.class_name != "person"; });
     return boxes;
   }
@@ -62,21 +61,6 @@ class DetectorQuality : public ::testing::Test {
     for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += step) {
       const cv::Mat mask = cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE);
       recall += eval::measure_mask_recall(mask, people(detector, cv::imread(images[i].string())));
-    }
-    return recall;
-  }
-
-  /// The same for walk_xyz turned about its centre, detected as seen or turned back before.
-  eval::MaskRecall rolled_recall(Detector& detector, double roll_deg, double turned_back_deg) {
-    const fs::path clip = data_ / "walk_xyz";
-    const std::vector<fs::path> images = files_in(clip / "rgb"), masks = files_in(clip / "mask");
-    const cv::Mat turn = cv::getRotationMatrix2D({319.5F, 239.5F}, roll_deg, 1.0);
-    eval::MaskRecall recall;
-    for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += 20) {
-      cv::Mat image, mask;
-      cv::warpAffine(cv::imread(images[i].string()), image, turn, {640, 480});
-      cv::warpAffine(cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE), mask, turn, {640, 480}, cv::INTER_NEAREST);
-      recall += eval::measure_mask_recall(mask, people(detector, image, turned_back_deg * kRadPerDeg));
     }
     return recall;
   }
@@ -118,18 +102,6 @@ TEST_F(DetectorQuality, covers_the_people_who_walk_through_the_clips) {
     const double recall = dynamic_pixel_recall(clip, 10).pixel_recall();
     EXPECT_GE(recall, 0.97) << clip;  // measured: 0.995 and 0.990 over all frames
   }
-}
-
-TEST_F(DetectorQuality, finds_people_at_any_roll_when_it_is_given) {
-  if (!fs::is_directory(data_ / "walk_xyz/mask")) GTEST_SKIP() << "no walk_xyz in RTD_DATA_DIR";
-  Detector detector(config_);
-  for (const double roll_deg : {60.0, 105.0, 180.0}) {
-    const double upright = rolled_recall(detector, roll_deg, roll_deg).pixel_recall();
-    std::cout << "roll " << roll_deg << ": as seen " << rolled_recall(detector, roll_deg, 0).pixel_recall()
-              << ", upright " << upright << '\n';
-    EXPECT_GE(upright, 0.85) << roll_deg;  // measured: 0.97, 0.89, 0.98
-  }
-  EXPECT_LE(rolled_recall(detector, 105, 0).pixel_recall(), 0.8);  // measured: 0.00; else turning is not needed
 }
 
 TEST_F(DetectorQuality, reaches_its_average_precision_on_coco) {
@@ -176,51 +148,28 @@ TEST_P(PermissiveQuality, reaches_its_average_precision_on_coco) {
   EXPECT_GE(report.ap50, GetParam().ap50);                  // measured: YOLOX-nano 0.506, NanoDet-g 0.439
 }
 
-/// An engine, and the network that it computes here in a minute: pocl takes minutes for the default one.
-struct EngineTrial {
-  const char* engine;
-  const char* model;
-  bool (*available)();
-  const char* needs;
-};
-
-constexpr const char* kNeedsOnnxruntime = "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
-
-bool onnxruntime_is_there() {
-  return knows_onnxruntime() && fs::exists(ONNXRUNTIME_LIBRARY);
-}
-
-class EngineQuality : public DetectorQuality, public ::testing::WithParamInterface<EngineTrial> {
+/// ONNX Runtime with each network.
+class EngineQuality : public DetectorQuality, public ::testing::WithParamInterface<const char*> {
  protected:
   void SetUp() override {
     DetectorQuality::SetUp();
     if (IsSkipped()) return;
     if (!fs::is_directory(data_ / "coco_val128/images")) GTEST_SKIP() << "no coco_val128 in RTD_DATA_DIR";
-    if (!GetParam().available()) GTEST_SKIP() << GetParam().needs;
-    const service::ModelSearch model = service::find_model(GetParam().model, service::process_environment());
+    if (!knows_onnxruntime() || !fs::exists(ONNXRUNTIME_LIBRARY))
+      GTEST_SKIP() << "needs ONNX Runtime: deploy/setup.sh --onnxruntime, then configure again";
+    const service::ModelSearch model = service::find_model(GetParam(), service::process_environment());
     if (!model) GTEST_SKIP() << model.message;
     config_.model_path = model.path;
     config_.decode.confidence_threshold = config_.decode.objectness_threshold = 0.001;
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Engines, EngineQuality,
-                         ::testing::Values(EngineTrial{"opencl", "v5lite-e-raw-320x320.onnx",
-                                                       [] { return !opencl_devices().empty(); },
-                                                       "needs an OpenCL device: apt-get install pocl-opencl-icd"},
-                                           EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "v5lite-s-raw-480x640.onnx",
-                                                       &onnxruntime_is_there, kNeedsOnnxruntime},
-                                           EngineTrial{"onnxruntime:" ONNXRUNTIME_LIBRARY, "yolox_nano.onnx",
-                                                       &onnxruntime_is_there, kNeedsOnnxruntime}),
-                         [](const auto& trial) {
-                           const std::string engine = trial.param.engine;
-                           return engine.substr(0, engine.find(':')) + "_" +
-                                  std::string(trial.param.model).substr(0, 5);
-                         });
+INSTANTIATE_TEST_SUITE_P(Onnxruntime, EngineQuality, ::testing::Values("v5lite-s-raw-480x640.onnx", "yolox_nano.onnx"),
+                         [](const auto& trial) { return std::string(trial.param).substr(0, 5); });
 
 TEST_P(EngineQuality, finds_on_coco_what_the_cpu_finds) {
   Detector cpu(config_);
-  config_.engine = GetParam().engine;
+  config_.engine = "onnxruntime:" ONNXRUNTIME_LIBRARY;
   Detector compared(config_);
   ASSERT_NE(compared.device(), cpu.device());
   const auto evaluated = detect_on_coco({&cpu, &compared});

@@ -19,7 +19,7 @@
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/person_segmenter.hpp"
-#include "services/evaluation/core/detection/mask_overlap.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 #include "tests/support/detector/mask_network.hpp"
 
 namespace rtd::detector {

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "common/geometry/pose_list.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
@@ -70,10 +71,11 @@ class DsSlamReport : public testing::TestWithParam<Sequence> {
     if (!std::filesystem::exists(folder / "ds_slam")) GTEST_SKIP() << "RTD_DATA_DIR has no trajectories/ds_slam";
     const auto run = folder / "ds_slam" / GetParam().mode / GetParam().name;
     results_ = run / "result";
-    estimate_ = read_tum_trajectory(run / "CameraTrajectory_0.txt");
+    estimate_ = geometry::read_pose_list(std::filesystem::path(run / "CameraTrajectory_0.txt")).poses;
     groundtruth_ =
-        read_tum_trajectory(folder / "groundtruth" /
-                            ("rgbd_dataset_freiburg3_" + std::string(GetParam().groundtruth) + "_groundtruth.txt"));
+        geometry::read_pose_list(folder / "groundtruth" /
+                                 ("rgbd_dataset_freiburg3_" + std::string(GetParam().groundtruth) + "_groundtruth.txt"))
+            .poses;
   }
 
   std::map<std::string, double> report(const std::string& kind) const {

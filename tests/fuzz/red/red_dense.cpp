@@ -8,7 +8,6 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/dense/core/background.hpp"
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/dense_service.hpp"
 #include "services/dense/frame_joiner.hpp"
@@ -55,7 +54,6 @@ class Target {
     navigation_.follow_corrections(2);
     const Volume volume = navigation_.volume(map_);
     if (const auto grid = navigation_.grid(volume)) make_grid(*grid, navigation_.R_grid_map(), 0, "map");
-    background_.paint(map_);
   }
 
  private:
@@ -63,7 +61,6 @@ class Target {
     for (const KeyframeUpdate& update : joined.updates) {
       if (update.new_map) {
         map_.clear();
-        background_.clear();
         navigation_.clear();
       }
       map_.update(update.event);
@@ -75,12 +72,10 @@ class Target {
     const Eigen::Isometry3d T_world_camera = msg::to_isometry(joined.result.T_world_camera);
     if (map_.integrate(image, mask, T_world_camera).outcome != FusionReport::Outcome::kFused) return;
     navigation_.integrate(image, T_world_camera);
-    background_.remember(image, mask, T_world_camera, map_.keyframes());
   }
 
   FrameJoiner joiner_{{.every = 1, .needs_masks = false}};
   StaticMap map_{small_config()};
-  BackgroundPainter background_{FusionConfig(), 4};
   NavigationMap navigation_{small_plan(), -Eigen::Vector3d::UnitY()};
 };
 

@@ -9,7 +9,6 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/detector/core/camera_roll.hpp"
 #include "services/detector/core/decoders/nanodet.hpp"
 #include "services/detector/core/decoders/yolov5.hpp"
 #include "services/detector/core/decoders/yolox.hpp"
@@ -50,7 +49,6 @@ class Attack {
  private:
   void step(bool hostile) {
     ++seq_;
-    for (int i = 0; i < 4; ++i) give_pose(hostile);
     SmallFrames::paint(seq_, *frame_);
     if (hostile) attacker_.attack(*frame_);
     if (hostile && attacker_.one_in(4)) {
@@ -60,22 +58,11 @@ class Attack {
     if (watch_.passes(*frame_)) watch_.call("frame", [&] { detect(vision::view_color(*frame_)); });
   }
 
-  void give_pose(bool hostile) {
-    msg::TrackingResult result{};
-    result.stamp_ns = SmallFrames::stamp_ns(seq_);
-    result.T_world_camera = {{0, 0, 0}, {0, 0, std::sin(0.01 * static_cast<double>(seq_)), 1}};
-    result.state = msg::TrackingState::kOk;
-    if (hostile) attacker_.attack(result);
-    if (!watch_.passes(result)) return;
-    watch_.call("pose", [&] { roll_.put(result.stamp_ns, msg::to_isometry(result.T_world_camera)); });
-  }
-
   /// What Detector does around the network.
   void detect(const cv::Mat& image) {
     if (image.empty()) return;
-    const UprightView view = fit_upright(image.size(), kInput, roll_.roll_rad());
-    fill_blob(image, fit_letterbox(image.size(), kInput), kInput, PixelFormat(), blob_);
-    fill_upright_blob(image, view, PixelFormat(), blob_);
+    const Letterbox view = fit_letterbox(image.size(), kInput);
+    fill_blob(image, view, kInput, PixelFormat(), blob_);
     const Answer answer = make_answer();
     check(decode_heads({answer.head}, kClasses, {}), view, image.size());
     check(decode_nanodet({{answer.logits.data(), answer.head.rows, answer.head.cols, 16, kBins}}, kClasses, {}), view,
@@ -85,9 +72,9 @@ class Attack {
   }
 
   /// Boxes lie within the frame, whatever the network says.
-  void check(const std::vector<Candidate>& found, const UprightView& view, cv::Size frame) {
+  void check(const std::vector<Candidate>& found, const Letterbox& view, cv::Size frame) {
     for (const Candidate& candidate : suppress_non_maxima(found, {})) {
-      const cv::Rect2f box = box_in_frame(candidate, view);
+      const cv::Rect2f box = box_in_frame(candidate, view, frame);
       const bool inside = box.x >= 0 && box.y >= 0 && box.br().x <= static_cast<float>(frame.width) + 0.5F &&
                           box.br().y <= static_cast<float>(frame.height) + 0.5F;
       if (!inside && broken_++ == 0)
@@ -114,7 +101,6 @@ class Attack {
 
   testing::RedWatch& watch_;
   testing::Attacker attacker_;
-  RollFeedback roll_{RollConfig()};
   cv::Mat blob_;
   std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
   std::uint64_t seq_ = 0, broken_ = 0;

@@ -161,10 +161,6 @@ std::vector<Case> texts(std::size_t bytes, const fs::path& folder) {
       [file = name("associations.txt")](const std::string& text) { camera::read_pairs(file(text).parent_path()); });
   add(cases, "poses", tables(bytes), [](const std::string& text) { geometry::read_pose_list(text, "input"); });
   add(cases, "truth", tables(bytes), [file = name("truth.csv")](const std::string& text) { read_truth(file(text)); });
-  add(cases, "trajectory", tables(bytes), [](const std::string& text) {
-    std::istringstream in(text);
-    geometry::read_tum_trajectory(in, "input");
-  });
   add(cases, "frames", tables(bytes),
       [file = name("rgb.txt")](const std::string& text) { geometry::read_frame_stamps(file(text)); });
   add(cases, "definition", types(bytes), [](const std::string& text) { ros::parse_definition("a/A", text); });

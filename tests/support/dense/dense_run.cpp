@@ -93,7 +93,6 @@ DenseReport run_dense(const DenseOptions& options) {
   slam::SlamSystem slam(slam_config, slam::MappingMode::kSynchronous, service::monotonic_ns);
   dense::StaticMap map(options.map);
   dense::NavigationMap navigation(options.navigation, Eigen::Vector3d::UnitZ());
-  dense::BackgroundPainter background(options.map.fusion, 24);
   DenseReport report;
   double total_ms = 0, total_grid_ms = 0;
   while (const auto frame = source->next()) {
@@ -119,7 +118,6 @@ DenseReport run_dense(const DenseOptions& options) {
       navigation.integrate(frame->image, T_world_camera);
       total_grid_ms += cpu_ms() - grid_start_ms;
     }
-    background.remember(frame->image, mask, T_world_camera, map.keyframes());
     ++report.integrated;
     report.fused += fusion.fused;
     report.masked += fusion.masked;
@@ -131,7 +129,6 @@ DenseReport run_dense(const DenseOptions& options) {
   report.grid_integrate_ms = total_grid_ms / static_cast<double>(std::max<std::size_t>(1, report.integrated));
   report.voxels = map.voxels();
   report.cloud = map.cloud();
-  report.background = background.paint(map);
   if (options.judge_every > 0) report.ghosts = judge(options, report.cloud, true_poses(slam, *source));
   return report;
 }

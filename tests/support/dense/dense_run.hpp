@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "services/dense/core/background.hpp"
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "tests/support/dense/ghost_measure.hpp"
@@ -28,7 +27,6 @@ struct DenseOptions {
 
 struct DenseReport {
   std::vector<dense::CloudPoint> cloud;  ///< in slam's world
-  cv::Mat background;                    ///< the last fused frame without what moves
   GhostReport ghosts;
   std::size_t frames = 0, integrated = 0, voxels = 0;
   std::uint64_t fused = 0, masked = 0, carved = 0;

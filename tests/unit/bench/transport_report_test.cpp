@@ -31,11 +31,10 @@ TEST(Transport, measures_only_what_a_path_can_carry) {
   EXPECT_EQ(count(Path::kSharing, Payload::kFrame), 1);
   EXPECT_EQ(count(Path::kSharing, Payload::kJpeg), 0) << "of variable size";
   EXPECT_EQ(count(Path::kUdp, Payload::kPose), 2) << "both vendors";
-  EXPECT_EQ(count(Path::kIceoryx, Payload::kFrame), 0) << "not asked for";
 }
 
 TEST(Transport, names_are_read_back) {
-  for (const Path path : {Path::kSharing, Path::kSharedMemory, Path::kUdp, Path::kIceoryx}) {
+  for (const Path path : {Path::kSharing, Path::kSharedMemory, Path::kUdp}) {
     EXPECT_EQ(parse_path(to_string(path)), path);
   }
   EXPECT_EQ(parse_payload("jpeg"), Payload::kJpeg);

@@ -70,13 +70,5 @@ TEST(CycloneConfig, refuses_a_peer_that_is_not_a_host) {
   EXPECT_THROW(domain_config(options, kLimits), BusError);
 }
 
-TEST(Roudi, is_not_confused_with_a_socket_that_it_left_behind) {
-  const std::string missing = testing::TempDir() + "no_roudi_here", stale = testing::TempDir() + "stale_roudi";
-  fclose(fopen(stale.c_str(), "w"));
-  EXPECT_THROW(require_roudi(missing), BusError);
-  EXPECT_THROW(require_roudi(stale), BusError);
-  std::remove(stale.c_str());
-}
-
 }  // namespace
 }  // namespace rtd::bus::cyclonedds

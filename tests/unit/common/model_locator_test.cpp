@@ -135,21 +135,6 @@ TEST(ModelTable, names_weights_and_licence) {
   EXPECT_EQ(describe_model("mine/own.onnx"), "own.onnx, licence not known");
 }
 
-TEST(KernelCache, lies_in_the_cache_of_the_user) {
-  std::map<std::string, std::string> variables;
-  const auto folder = [&] {
-    return kernel_cache_folder([&](const std::string& name) -> std::optional<std::string> {
-      const auto found = variables.find(name);
-      return found == variables.end() ? std::nullopt : std::optional(found->second);
-    });
-  };
-  EXPECT_EQ(folder(), "");
-  variables["HOME"] = "/home/anna";
-  EXPECT_EQ(folder(), "/home/anna/.cache/rtd-slam/opencl");
-  variables["XDG_CACHE_HOME"] = "/cache";
-  EXPECT_EQ(folder(), "/cache/rtd-slam/opencl");
-}
-
 TEST_F(ModelLocator, finds_the_network_for_masks_in_the_same_folders) {
   EXPECT_FALSE(find_mask_model("auto", "", all()));
   EXPECT_THAT(find_mask_model("auto", "", all()).message,

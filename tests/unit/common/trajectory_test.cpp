@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/geometry/trajectory.hpp"
+#include "common/geometry/pose_list.hpp"
 
 #include <gmock/gmock.h>
 
@@ -18,8 +18,7 @@ namespace rtd::geometry {
 namespace {
 
 Trajectory read(const std::string& text) {
-  std::istringstream input(text);
-  return read_tum_trajectory(input, "est.txt");
+  return read_pose_list(text, "est.txt").poses;
 }
 
 std::string error_of(const std::string& text) {
@@ -106,32 +105,27 @@ TEST_P(TumTrajectoryRejects, with_line_and_cause) {
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, TumTrajectoryRejects,
-    testing::Values(
-        BadFile{"nan", "1 0 0 0 0 0 0 1\n2 nan 0 0 0 0 0 1\n", "est.txt:2:", "not a finite number"},
-        BadFile{"infinite", "1 inf 0 0 0 0 0 1\n", "est.txt:1:", "not a finite number"},
-        BadFile{"few_columns", "# c\n1 0 0 0 0 0 1\n", "est.txt:2:", "7 columns instead of 8"},
-        BadFile{"many_columns", "1 0 0 0 0 0 0 1 9\n", "est.txt:1:", "9 columns instead of 8"},
-        BadFile{"word", "1 0 zero 0 0 0 0 1\n", "est.txt:1:", "'zero' is not a number"},
-        BadFile{"tail", "1 0 0 0 0 0 0 1x\n", "est.txt:1:", "'1x' is not a number"},
-        BadFile{"long_quaternion", "1 0 0 0 0 0 1 1\n", "est.txt:1:", "quaternion has length 1.41"},
-        BadFile{"zero_quaternion", "1 0 0 0 0 0 0 0\n", "est.txt:1:", "quaternion has length 0.00"},
-        BadFile{"backwards", "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n", "est.txt:2:", "earlier than the one before"},
-        BadFile{"nanoseconds", "1341846313654184100 0 0 0 0 0 0 1\n", "est.txt:1:", "seconds, not nanoseconds"},
-        BadFile{"empty", "# nothing\n\n", "est.txt", "holds no poses"}),
+    testing::Values(BadFile{"few_columns", "# c\n1 0 0 0 0 0 1\n", "est.txt:2:", "7 columns instead of 8"},
+                    BadFile{"many_columns", "1 0 0 0 0 0 0 1 9\n", "est.txt:1:", "9 columns instead of 8"},
+                    BadFile{"word", "1 0 zero 0 0 0 0 1\n", "est.txt:1:", "'zero' is not a number"},
+                    BadFile{"tail", "1 0 0 0 0 0 0 1x\n", "est.txt:1:", "'1x' is not a number"},
+                    BadFile{"long_quaternion", "1 0 0 0 0 0 1 1\n", "est.txt:1:", "quaternion has length 1.41"},
+                    BadFile{"zero_quaternion", "1 0 0 0 0 0 0 0\n", "est.txt:1:", "quaternion has length 0.00"},
+                    BadFile{"empty", "# nothing\n\n", "est.txt", "holds no poses"}),
     [](const testing::TestParamInfo<BadFile>& bad) { return bad.param.name; });
 
 TEST(TumTrajectory, missing_file_and_folder_are_named) {
   EXPECT_THROW(
       {
         try {
-          read_tum_trajectory(std::filesystem::path("/nonexistent/t.txt"));
+          read_pose_list(std::filesystem::path("/nonexistent/t.txt"));
         } catch (const TrajectoryError& error) {
           EXPECT_THAT(error.what(), testing::HasSubstr("/nonexistent/t.txt cannot be read: No such file"));
           throw;
         }
       },
       TrajectoryError);
-  EXPECT_THROW(read_tum_trajectory(std::filesystem::temp_directory_path()), TrajectoryError);
+  EXPECT_THROW(read_pose_list(std::filesystem::temp_directory_path()), TrajectoryError);
 }
 
 TEST(FrameStamps, are_in_the_names_of_a_list_without_stamps) {
@@ -139,50 +133,6 @@ TEST(FrameStamps, are_in_the_names_of_a_list_without_stamps) {
   std::ofstream(file) << "\xEF\xBB\xBFrgb/1305031102.175304.png\r\nrgb/1305031102.211214.png\r\n";
   EXPECT_EQ(read_frame_stamps(file), (std::vector<std::int64_t>{1305031102175304000, 1305031102211214000}));
   std::filesystem::remove(file);
-}
-
-TEST(TumTrajectory, keeps_all_rows_as_written_when_asked_to) {
-  std::istringstream input("2 0 0 0 0 0 0 1 # last\n1 0 0 0 0 0 0 1.04\n1 0 0 0 0 0 0 1\n");
-  EXPECT_EQ(read_tum_trajectory(input, "truth.txt", TumRows::kAsWritten).size(), 3U);
-  std::istringstream nothing("");
-  EXPECT_TRUE(read_tum_trajectory(nothing, "truth.txt", TumRows::kAsWritten).empty());
-}
-
-Eigen::Isometry3d shifted(double x_m) {
-  return Eigen::Isometry3d(Eigen::Translation3d(x_m, 0, 0));
-}
-
-TEST(TumTrajectoryWriter, writes_stamps_from_the_integer) {
-  std::ostringstream out;
-  write_tum_trajectory(out, {{1'305'031'102'175'304'000, Eigen::Isometry3d::Identity()}});
-  EXPECT_EQ(out.str(),
-            "1305031102.175304 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 0.000000000 1.000000000\n");
-}
-
-TEST(TumTrajectoryWriter, rounds_nanoseconds_and_keeps_signs) {
-  std::ostringstream out;
-  write_tum_trajectory(out, {{999'999'999, shifted(1)}, {-1'500'000'000, shifted(2)}, {0, shifted(3)}});
-  EXPECT_THAT(out.str(), ::testing::HasSubstr("1.000000 1.000000000"));
-  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n-1.500000 2.000000000"));
-  EXPECT_THAT(out.str(), ::testing::HasSubstr("\n0.000000 3.000000000"));
-}
-
-TEST(TumTrajectoryWriter, writes_quaternions_with_positive_w) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::AngleAxisd(-1.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  std::ostringstream out;
-  write_tum_trajectory(out, {{0, T}});
-  EXPECT_THAT(out.str(), ::testing::HasSubstr("-0.479425539 0.877582562\n"));
-}
-
-TEST(TumTrajectoryWriter, cuts_stamps_of_ground_truth_and_leaves_quaternions_as_they_are) {
-  Eigen::Isometry3d T = shifted(1);
-  T.linear() = Eigen::Quaterniond(-0.1, 0.3, 0.4, 0.86).normalized().toRotationMatrix();
-  std::ostringstream out;
-  write_tum_trajectory(out, {{1'066'666'999, T}}, TumStyle::kGroundtruth);
-  EXPECT_EQ(out.str(),
-            "# timestamp tx ty tz qx qy qz qw\n"
-            "1.066666 1.000000000 0.000000000 0.000000000 0.300060018 0.400080024 0.860172052 -0.100020006\n");
 }
 
 }  // namespace

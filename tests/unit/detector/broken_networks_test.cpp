@@ -59,7 +59,6 @@ class BrokenNetwork : public ::testing::TestWithParam<bool> {
 TEST_P(BrokenNetwork, of_nothing_but_nan_finds_nothing) {
   Detector network = detector([](float) { return kNan; });
   EXPECT_TRUE(network.detect(noise()).empty());
-  EXPECT_TRUE(network.detect_upright(noise(), 1.0).empty());
 }
 
 TEST_P(BrokenNetwork, that_sees_something_in_every_cell_gives_the_hundred_best) {
@@ -67,7 +66,6 @@ TEST_P(BrokenNetwork, that_sees_something_in_every_cell_gives_the_hundred_best) 
   const std::vector<vision::Detection> found = network.detect(noise());
   EXPECT_EQ(found.size(), 100U);
   expect_sane(found);
-  expect_sane(network.detect_upright(noise(), 1.0));
 }
 
 TEST_P(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
@@ -76,7 +74,6 @@ TEST_P(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
     std::normal_distribution<float> normal(0, size);
     Detector network = detector([&](float) { return normal(random); });
     expect_sane(network.detect(noise()));
-    expect_sane(network.detect_upright(noise(), -2.0));
   }
 }
 

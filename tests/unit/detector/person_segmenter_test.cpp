@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
@@ -179,16 +178,6 @@ TEST_F(PersonSegmenterTest, knows_no_more_people_than_labels_can_name) {
   EXPECT_TRUE(make().segment(image_of({{{0, 0, 320, 240}, 1}}), many, 4).empty());
 }
 
-TEST_F(PersonSegmenterTest, turns_the_image_upright) {
-  const cv::Rect body(60, 100, 120, 40);  // lies
-  for (const double roll_rad : {std::numbers::pi / 2, -std::numbers::pi / 2, std::numbers::pi, 0.3}) {
-    const vision::PersonMasks masks = make().segment(image_of({{body, 1}}), {person(body)}, 4, roll_rad);
-    EXPECT_NEAR(area_of(masks, 1), body.area() / 16, 35) << roll_rad;
-    EXPECT_EQ(masks.at(30, 30), 1);
-    EXPECT_EQ(masks.at(13, 30), 0);
-  }
-}
-
 /// What the segmenter says of a file.
 std::string refusal(const std::string& path) {
   MaskConfig config;
@@ -203,9 +192,8 @@ std::string refusal(const std::string& path) {
 }
 
 TEST(PersonSegmenterFileTest, refuses_files_that_are_no_network_for_masks) {
-  EXPECT_THAT(refusal("/nowhere/masks.onnx"),
-              AllOf(HasSubstr("/nowhere/masks.onnx cannot be read: No such file"), HasSubstr("setup.sh"),
-                    HasSubstr("detector.mask_model")));
+  EXPECT_THAT(refusal("/nowhere/masks.onnx"), AllOf(HasSubstr("/nowhere/masks.onnx cannot be read: No such file"),
+                                                    HasSubstr("setup.sh"), HasSubstr("detector.mask_model")));
   const std::string path = ::testing::TempDir() + "person_segmenter_test.onnx";
   const auto write = [&](const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; };
   write("no network");

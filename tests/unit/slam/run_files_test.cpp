@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "common/geometry/pose_list.hpp"
 #include "services/slam/map_keeper.hpp"
 
 namespace rtd::slam {
@@ -20,8 +21,8 @@ TEST(RunFiles, a_trajectory_whose_stamps_go_back_has_a_file_for_each_segment) {
   for (const std::int64_t second : {1, 2, 3, 1, 2}) poses.push_back({second * 1'000'000'000, {}});
   for (StampedPose& pose : poses) pose.T_world_body.setIdentity();
   write_trajectory(poses, folder / "trajectory");
-  EXPECT_THAT(geometry::read_tum_trajectory(folder / "trajectory.txt"), SizeIs(3));
-  EXPECT_THAT(geometry::read_tum_trajectory(folder / "trajectory_segment_2.txt"), SizeIs(2));
+  EXPECT_THAT(geometry::read_pose_list(std::filesystem::path(folder / "trajectory.txt")).poses, SizeIs(3));
+  EXPECT_THAT(geometry::read_pose_list(std::filesystem::path(folder / "trajectory_segment_2.txt")).poses, SizeIs(2));
   EXPECT_FALSE(std::filesystem::exists(folder / "trajectory_segment_3.txt"));
   write_trajectory({}, folder / "none");
   EXPECT_TRUE(std::filesystem::exists(folder / "none.txt")) << "empty, but there";

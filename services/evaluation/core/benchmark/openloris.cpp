@@ -11,7 +11,7 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/frame_source.hpp"
-#include "common/geometry/trajectory.hpp"
+#include "common/geometry/pose_list.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"
@@ -123,12 +123,8 @@ Groundtruth read_groundtruth(const fs::path& file) {
     for (const std::string& field : line.fields) rows += field + ' ';
     rows += '\n';
   }
-  std::istringstream input(rows);
   try {
-    for (const geometry::StampedPose& pose :
-         geometry::read_tum_trajectory(input, file.string(), geometry::TumRows::kAsWritten)) {
-      if (truth.poses.empty() || pose.stamp_ns > truth.poses.back().stamp_ns) truth.poses.push_back(pose);
-    }
+    truth.poses = geometry::read_pose_list(rows, file.string()).poses;
   } catch (const geometry::TrajectoryError& error) {
     throw SourceError(error.what());
   }

@@ -8,6 +8,10 @@
 namespace rtd::eval {
 namespace {
 
+double share_of(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 1 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
 constexpr std::size_t kMinPerson_px = 400;
 constexpr double kFoundShare = 0.5, kBesideShare = 0.05;
 
@@ -36,12 +40,54 @@ void count_people(const cv::Mat& marked, const cv::Mat& covered, MaskRecall& rec
 
 }  // namespace
 
+double MaskOverlap::iou() const {
+  return share_of(common_px, marked_px + labelled_px - common_px);
+}
+
+double MaskOverlap::precision() const {
+  return share_of(common_px, labelled_px);
+}
+
+double MaskOverlap::recall() const {
+  return share_of(common_px, marked_px);
+}
+
+double MaskOverlap::box_precision() const {
+  return share_of(marked_px, boxed_px);
+}
+
+MaskOverlap& MaskOverlap::operator+=(const MaskOverlap& other) {
+  boxed_px += other.boxed_px;
+  marked_px += other.marked_px;
+  labelled_px += other.labelled_px;
+  common_px += other.common_px;
+  return *this;
+}
+
+MaskOverlap measure_mask_overlap(const cv::Mat& mask, const std::vector<vision::Detection>& boxes,
+                                 const vision::PersonMasks& labels) {
+  cv::Mat boxed = cv::Mat::zeros(mask.size(), CV_8UC1), labelled = boxed.clone();
+  for (const vision::Detection& box : boxes) {
+    const cv::Point corner(static_cast<int>(std::floor(box.x_px)), static_cast<int>(std::floor(box.y_px)));
+    const cv::Point opposite(static_cast<int>(std::ceil(box.x_px + box.width_px)),
+                             static_cast<int>(std::ceil(box.y_px + box.height_px)));
+    boxed(cv::Rect(corner, opposite) & cv::Rect({0, 0}, mask.size())).setTo(255);
+  }
+  for (int row = 0; row < mask.rows; ++row)
+    for (int column = 0; column < mask.cols; ++column)
+      if (labels.at(column / vision::kMaskStepPx, row / vision::kMaskStepPx) != 0)
+        labelled.at<uchar>(row, column) = 255;
+  const cv::Mat marked = (mask != 0) & boxed;
+  labelled &= boxed;
+  return {count(boxed), count(marked), count(labelled), count(marked & labelled)};
+}
+
 double MaskRecall::pixel_recall() const {
-  return pixels == 0 ? 1 : static_cast<double>(covered_pixels) / static_cast<double>(pixels);
+  return share_of(covered_pixels, pixels);
 }
 
 double MaskRecall::image_share() const {
-  return images == 0 ? 1 : static_cast<double>(images_complete) / static_cast<double>(images);
+  return share_of(images_complete, images);
 }
 
 MaskRecall& MaskRecall::operator+=(const MaskRecall& other) {

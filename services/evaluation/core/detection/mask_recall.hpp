@@ -7,8 +7,27 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
+#include "common/vision/person_masks.hpp"
 
 namespace rtd::eval {
+
+/// How far the labels of a detector's masks agree with true masks, inside its boxes. Sums up over images with +=.
+struct MaskOverlap {
+  std::size_t boxed_px = 0;                    ///< inside boxes; all others count only those
+  std::size_t marked_px = 0, labelled_px = 0;  ///< in the true mask; with a label
+  std::size_t common_px = 0;                   ///< both
+
+  double iou() const;            ///< common / (marked or labelled); 1 when there is neither
+  double precision() const;      ///< common / labelled; 1 without labels
+  double recall() const;         ///< common / marked; 1 when nothing is marked
+  double box_precision() const;  ///< marked / boxed: that of boxes alone; 1 without boxes
+  MaskOverlap& operator+=(const MaskOverlap& other);
+};
+
+/// One image: the true `mask` (CV_8UC1, not 0 = marked) against labels of the same image. Without labels, nothing is
+/// labelled.
+MaskOverlap measure_mask_overlap(const cv::Mat& mask, const std::vector<vision::Detection>& boxes,
+                                 const vision::PersonMasks& labels);
 
 /// How much of what a mask marks lies in boxes. Sums up over images with +=.
 struct MaskRecall {

@@ -115,7 +115,6 @@ detector::DetectorConfig config_of(const DetectorOptions& options, const std::st
   config.model_path = options.model_path;
   config.engine = engine;
   config.threads = options.threads;
-  config.kernel_cache = options.kernel_cache;
   config.onnxruntime = options.onnxruntime;
   return config;
 }

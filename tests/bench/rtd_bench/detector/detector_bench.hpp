@@ -25,9 +25,8 @@ struct DetectorOptions {
   std::string model_path;
   std::vector<std::string> engines = {"cpu"};
   std::vector<int> batches = {1};
-  int threads = 1;           ///< of engines that compute on the CPU
-  std::string kernel_cache;  ///< folder for what OpenCL compiles; empty: none
-  std::string onnxruntime;   ///< library that the engine auto may load; empty: none
+  int threads = 1;          ///< of engines that compute on the CPU
+  std::string onnxruntime;  ///< library that the engine auto may load; empty: none
 };
 
 /// For one of the engines.

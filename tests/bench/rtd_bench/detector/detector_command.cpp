@@ -56,7 +56,6 @@ DetectorOptions complete(DetectorRequest& request) {
   if (!model) throw service::ConfigError(model.message);
   DetectorOptions options = request.options;
   options.model_path = model.path;
-  options.kernel_cache = service::kernel_cache_folder(environment);
   options.onnxruntime = service::find_onnxruntime();
   return options;
 }

@@ -47,11 +47,7 @@ BarLayout layout_of(const std::vector<DetectorResult>& cases) {
 }
 
 const char* engine_colour(const std::string& engine) {
-  static constexpr std::array kColours = {std::pair{"cpu", palette::kBlue},
-                                          std::pair{"opencl", palette::kAmber}};  // others: green
-  for (const auto& [name, colour] : kColours)
-    if (engine.starts_with(name)) return colour;
-  return palette::kGreen;
+  return engine == "cpu" ? palette::kBlue : palette::kGreen;
 }
 
 void draw_ticks(Svg& svg, const BarLayout& layout, const std::string& axis) {

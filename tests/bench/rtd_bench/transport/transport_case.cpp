@@ -13,8 +13,7 @@ struct PathName {
 };
 constexpr PathName kPaths[] = {{Path::kSharing, "sharing", "fastdds", true},
                                {Path::kSharedMemory, "shm", "fastdds", false},
-                               {Path::kUdp, "udp", "", false},
-                               {Path::kIceoryx, "iceoryx", "cyclonedds", true}};
+                               {Path::kUdp, "udp", "", false}};
 
 struct PayloadName {
   Payload payload;
@@ -68,8 +67,7 @@ std::vector<TransportCase> transport_cases(const TransportOptions& options) {
     for (const std::string& vendor : vendors) {
       if (vendor == "inprocess") continue;
       for (const PathName& path : kPaths) {
-        const bool offered =
-            (path.vendor[0] == '\0' || vendor == path.vendor) && (path.path != Path::kIceoryx || options.iceoryx);
+        const bool offered = path.vendor[0] == '\0' || vendor == path.vendor;
         if (offered && (entry(payload).fixed_size || !path.fixed_size_only)) {
           cases.push_back({vendor, path.path, payload});
         }
@@ -85,7 +83,6 @@ bus::BusOptions bus_options(const TransportCase& what, std::uint32_t domain, con
   options.domain = domain;
   options.participant_name = name;
   options.shared_memory = what.path != Path::kUdp;
-  options.iceoryx = what.path == Path::kIceoryx;
   return options;
 }
 

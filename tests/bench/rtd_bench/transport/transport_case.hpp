@@ -19,7 +19,6 @@ enum class Path {
   kSharing,       ///< Fast DDS data sharing: stays in the writer's memory, fixed sizes only
   kSharedMemory,  ///< Fast DDS's shared-memory transport
   kUdp,           ///< loopback interface
-  kIceoryx,       ///< Cyclone DDS through a running iox-roudi, fixed sizes only
 };
 
 /// One row of the table.
@@ -36,7 +35,6 @@ struct TransportOptions {
   double rate_hz = 30;
   double flood_s = 2;  ///< for the maximum rate
   std::uint32_t domain = 0;
-  bool iceoryx = false;  ///< also Cyclone DDS through iceoryx: needs a running iox-roudi
 };
 
 /// What the publishing process measured. Times in us, CPU in percent of one core.

@@ -74,7 +74,6 @@ void add_transport_commands(CLI::App& app, TransportRequest& request) {
       ->delimiter(',')
       ->check(
           CLI::IsMember({"frame", "frame-848x480", "frame-1280x720", "frame-1920x1200", "jpeg", "features", "pose"}));
-  bench->add_flag("--iceoryx", request.options.iceoryx, "Also Cyclone DDS through a running iox-roudi");
   bench->add_option("--svg", request.svg_file, "Also draw a picture into this file");
   bench->add_flag("--json", request.json, "Report as JSON");
 

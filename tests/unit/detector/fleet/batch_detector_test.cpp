@@ -62,7 +62,7 @@ TEST_F(BatchDetectorTest, computes_one_by_one_with_a_network_of_one_image) {
 
 TEST_F(BatchDetectorTest, continues_on_the_cpu_without_the_engine_asked_for) {
   DetectorConfig without = config({.free_batch = true});
-  without.engine = "opencl:no such device";
+  without.engine = "onnxruntime:/nowhere.so";
   BatchDetector detector(without, 4);
   EXPECT_THAT(detector.guard().fallback(), Not(IsEmpty()));
   EXPECT_THAT(detector.device(), HasSubstr("CPU (OpenCV DNN) in place of the engine asked for: "));

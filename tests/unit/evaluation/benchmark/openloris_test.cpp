@@ -6,7 +6,7 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/frame_source.hpp"
-#include "common/geometry/trajectory.hpp"
+#include "common/geometry/pose_list.hpp"
 #include "tests/unit/evaluation/benchmark/dataset_folder.hpp"
 
 namespace rtd::eval {
@@ -39,7 +39,7 @@ TEST_F(PrepareOpenloris, reads_the_intrinsics_in_their_order_and_depth_in_millim
 
 TEST_F(PrepareOpenloris, moves_the_ground_truth_from_the_base_to_the_camera) {
   prepare();
-  const geometry::Trajectory truth = geometry::read_tum_trajectory(into_ / "groundtruth.txt");
+  const geometry::Trajectory truth = geometry::read_pose_list(std::filesystem::path(into_ / "groundtruth.txt")).poses;
   ASSERT_EQ(truth.size(), 2U);
   // T_base_camera = T_base_laser * T_camera_laser^-1: the camera is 0.3 m behind the base and 0.3 m above it.
   EXPECT_TRUE(truth[0].T_world_body.translation().isApprox(Eigen::Vector3d(0.7, 0, 0.3), 1e-6));

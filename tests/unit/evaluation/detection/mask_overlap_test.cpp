@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/detection/mask_overlap.hpp"
+#include "services/evaluation/core/detection/mask_recall.hpp"
 
 #include <gtest/gtest.h>
 
