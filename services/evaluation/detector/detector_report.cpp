@@ -5,12 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <limits>
 #include <optional>
-
-#include "services/evaluation/core/plot/chart.hpp"
-#include "services/evaluation/core/report/html.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -197,40 +192,6 @@ std::string lines_of(const InputReport& input, const std::string& partner) {
   return text;
 }
 
-using plot::Chart;
-using plot::Svg;
-
-constexpr double kWidth = 900, kHeight = 420, kNoGap = std::numeric_limits<double>::infinity();
-constexpr plot::Area kArea{70, 50, 800, 300};
-
-std::string colour_of(std::size_t model) {
-  static constexpr std::array<const char*, 5> kColours = {
-      plot::palette::kBlue, plot::palette::kRed, plot::palette::kGreen, plot::palette::kAmber, plot::palette::kPurple};
-  return kColours[model % kColours.size()];
-}
-
-template <class Results>
-void draw_model_legend(Svg& svg, const Results& results) {
-  std::vector<plot::LegendEntry> entries;
-  for (std::size_t i = 0; i < results.models.size(); ++i)
-    entries.push_back({results.models[i].model.title(), colour_of(i)});
-  plot::draw_legend(svg, {kArea.x, 28}, entries);
-}
-
-/// Pixel recall at the lowest threshold by roll.
-void draw_roll_curve(Chart& chart, const RecallByRoll& by_roll, const plot::Stroke& stroke) {
-  std::vector<double> rolls_deg, recalls;
-  for (const auto& [roll_deg, by_threshold] : by_roll) {
-    rolls_deg.push_back(roll_deg);
-    recalls.push_back(by_threshold.begin()->second.pixel_recall());
-  }
-  chart.curve(rolls_deg, recalls, stroke, kNoGap);
-}
-
-std::string preformatted(const std::string& text) {
-  return "<pre style=\"overflow-x:auto\">" + plot::escape_markup(text) + "</pre>";
-}
-
 }  // namespace
 
 json to_json(const LabelledResults& results) {
@@ -287,54 +248,6 @@ std::string input_lines(const LabelledResults& results) {
 
 std::string input_lines(const MaskResults& results) {
   return lines_of(results.input, "without mask (left out)");
-}
-
-Svg to_plot(const LabelledResults& results) {
-  Svg svg(kWidth, kHeight, "precision and recall over the confidence threshold");
-  Chart chart(svg, kArea, {0, 1}, {0, 1});
-  chart.draw_axes({"confidence threshold (high motion level; solid: recall, dashed: precision)", "share"});
-  draw_model_legend(svg, results);
-  for (std::size_t i = 0; i < results.models.size(); ++i) {
-    const auto high = results.models[i].accuracy.groups.find("high");
-    if (high == results.models[i].accuracy.groups.end()) continue;
-    std::vector<double> thresholds, precision, recall;
-    for (int step = 1; step < kCurveSteps; ++step) {
-      const OperatingPoint point = at_threshold(high->second.curve, step / double(kCurveSteps));
-      if (point.recall <= 0) break;  // nothing is found any more: precision says nothing
-      thresholds.push_back(point.threshold);
-      precision.push_back(point.precision);
-      recall.push_back(point.recall);
-    }
-    chart.curve(thresholds, recall, {colour_of(i), 2}, kNoGap);
-    chart.curve(thresholds, precision, {colour_of(i), 1.5, "5 4"}, kNoGap);
-  }
-  return svg;
-}
-
-Svg to_plot(const MaskResults& results) {
-  Svg svg(kWidth, kHeight, "recall over roll");
-  std::vector<double> rolls_deg;
-  for (const auto& [roll_deg, recall] : results.models.front().as_seen) rolls_deg.push_back(roll_deg);
-  Chart chart(svg, kArea, plot::range_of(rolls_deg), {0, 1});
-  chart.draw_axes({"roll [deg] (dashed: as the camera sees it, solid: turned upright)", "pixel recall"});
-  draw_model_legend(svg, results);
-  for (std::size_t i = 0; i < results.models.size(); ++i) {
-    draw_roll_curve(chart, results.models[i].as_seen, {colour_of(i), 2, "5 4"});
-    draw_roll_curve(chart, results.models[i].upright, {colour_of(i), 2});
-  }
-  return svg;
-}
-
-std::string to_html(const LabelledResults& results) {
-  return html::page("Detector accuracy", input_lines(results),
-                    html::section("Models", "", preformatted(to_table(results))) +
-                        html::section("Thresholds", "", to_plot(results).str()));
-}
-
-std::string to_html(const MaskResults& results) {
-  return html::page("Detector recall on masks", input_lines(results),
-                    html::section("Recall over roll", "", to_plot(results).str()) +
-                        html::section("Figures", "", preformatted(to_table(results))));
 }
 
 }  // namespace rtd::eval

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "services/evaluation/core/plot/svg.hpp"
 #include "services/evaluation/detector/evaluate.hpp"
 
 namespace rtd::eval {
@@ -21,14 +20,5 @@ std::string input_lines(const MaskResults& results);
 /// docs/evaluation.md lists the keys.
 nlohmann::json to_json(const LabelledResults& results);
 nlohmann::json to_json(const MaskResults& results);
-
-/// Labels: precision and recall of the high motion level over the confidence threshold. Masks: share of marked pixels
-/// in boxes over roll, dashed as the camera sees it, solid upright. A colour for each model.
-plot::Svg to_plot(const LabelledResults& results);
-plot::Svg to_plot(const MaskResults& results);
-
-/// Self-contained pages with the tables.
-std::string to_html(const LabelledResults& results);
-std::string to_html(const MaskResults& results);
 
 }  // namespace rtd::eval

@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <ostream>
 
 #include "common/io/atomic_file.hpp"
@@ -31,32 +30,24 @@ RollRange parse_roll(const std::string& text) {
   return roll;
 }
 
-void write_file(const std::filesystem::path& path, const std::string& content, const std::string& option) {
-  try {
-    io::write_file(path, content, {.named_by = io::NamedBy::kOperator});
-  } catch (const io::IoError& error) {
-    throw service::ConfigError(option + " " + error.what());
-  }
-}
-
 /// Runs before the long work, so that a wrong path does not waste it.
-void check_outputs(const EvalDetectorOptions& options) {
+void check_output(const EvalDetectorOptions& options) {
   try {
-    if (!options.out_dir.empty()) process::make_out_folder(options.out_dir);
     if (!options.json.empty()) const io::AtomicFile begun(options.json, {.named_by = io::NamedBy::kOperator});
   } catch (const io::IoError& error) {
     throw service::ConfigError(std::string("--json ") + error.what());
   }
 }
 
-void write_results(const EvalDetectorOptions& options, const auto& results, const std::string& plot_name,
-                   std::ostream& out, std::ostream& err) {
+void print_results(const EvalDetectorOptions& options, const auto& results, std::ostream& out, std::ostream& err) {
   err << input_lines(results);
   out << to_table(results);
-  if (!options.json.empty()) write_file(options.json, service::json_text(to_json(results)) + "\n", "--json");
-  if (options.out_dir.empty()) return;
-  write_file(options.out_dir + "/" + plot_name, to_plot(results).document(), "--out");
-  write_file(options.out_dir + "/detector.html", to_html(results), "--out");
+  if (options.json.empty()) return;
+  try {
+    io::write_file(options.json, service::json_text(to_json(results)) + "\n", {.named_by = io::NamedBy::kOperator});
+  } catch (const io::IoError& error) {
+    throw service::ConfigError(std::string("--json ") + error.what());
+  }
 }
 
 void add_mask_options(CLI::App& command, EvalDetectorOptions& options) {
@@ -96,7 +87,6 @@ CLI::App* add_eval_detector_command(CLI::App& parent, EvalDetectorOptions& optio
       ->capture_default_str();
   command->add_option("--step", options.step, "Every n-th image")->check(CLI::Range(1, 100000))->capture_default_str();
   command->add_option("--json", options.json, "Write all figures here");
-  command->add_option("--out", options.out_dir, "Write plots (SVG) and a page (HTML) into this folder");
   add_mask_options(*command, options);
   labels->excludes("--masks");
   return command;
@@ -109,11 +99,11 @@ int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std
     }
     if (!options.mask_model.empty() && (options.masks.empty() || options.class_name != "person"))
       throw service::ConfigError("--mask-model needs --masks DIR that show people (--class person)");
-    check_outputs(options);
+    check_output(options);
     if (options.labels.empty()) {
-      write_results(options, evaluate_masks(options, err), "recall_over_roll.svg", out, err);
+      print_results(options, evaluate_masks(options, err), out, err);
     } else {
-      write_results(options, evaluate_labels(options, err), "thresholds.svg", out, err);
+      print_results(options, evaluate_labels(options, err), out, err);
     }
     return service::kOk;
   });
