@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/ablation/ablation.hpp"
+#include "services/evaluation/core/experiment/variants.hpp"
 
 #include <gmock/gmock.h>
 
@@ -17,14 +17,14 @@ const std::vector<std::string> kModes{"off", "semantic", "geometry", "epipolar",
 const std::vector<Technique> kTechniques{{"filter.techniques.depth_check", "no check"},
                                          {"slam.techniques.adaptive_kernel", "Huber"}};
 
-std::vector<std::string> names(const AblationPlan& plan) {
+std::vector<std::string> names(const VariantPlan& plan) {
   std::vector<std::string> result;
   for (const Variant& variant : plan.variants) result.push_back(variant.name);
   return result;
 }
 
-TEST(AblationPlan, runs_every_mode_then_the_baseline_without_each_technique) {
-  const AblationPlan plan = plan_ablation({}, kModes, kTechniques);
+TEST(Variants, runs_every_mode_then_the_baseline_without_each_technique) {
+  const VariantPlan plan = plan_variants({}, kModes, kTechniques);
   EXPECT_THAT(names(plan), ElementsAre("off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd",
                                        "without depth_check", "without adaptive_kernel"));
   EXPECT_THAT(plan.variants[7].settings, ElementsAre("slam.techniques.adaptive_kernel=false"));
@@ -32,41 +32,41 @@ TEST(AblationPlan, runs_every_mode_then_the_baseline_without_each_technique) {
   EXPECT_EQ(plan.variants[7].folder(), "without_adaptive_kernel");
 }
 
-TEST(AblationPlan, keeps_to_what_was_asked_and_adds_the_baseline_that_it_needs) {
-  EXPECT_THAT(names(plan_ablation({{"off"}, {"depth_check"}, true}, kModes, kTechniques)),
+TEST(Variants, keeps_to_what_was_asked_and_adds_the_baseline_that_it_needs) {
+  EXPECT_THAT(names(plan_variants({{"off"}, {"depth_check"}, true}, kModes, kTechniques)),
               ElementsAre("off", "rtd", "without depth_check"));
-  EXPECT_THAT(names(plan_ablation({{"off", "rtd"}, {"none"}, true}, kModes, kTechniques)), ElementsAre("off", "rtd"));
-  EXPECT_THAT(names(plan_ablation({{"rtd"}, {"slam.techniques.adaptive_kernel"}, true}, kModes, kTechniques)),
+  EXPECT_THAT(names(plan_variants({{"off", "rtd"}, {"none"}, true}, kModes, kTechniques)), ElementsAre("off", "rtd"));
+  EXPECT_THAT(names(plan_variants({{"rtd"}, {"slam.techniques.adaptive_kernel"}, true}, kModes, kTechniques)),
               ElementsAre("rtd", "without adaptive_kernel"));
 }
 
-TEST(AblationPlan, leaves_out_what_is_nothing_without_a_detector_and_says_so) {
-  const AblationPlan plan = plan_ablation({{}, {"none"}, false}, kModes, kTechniques);
+TEST(Variants, leaves_out_what_is_nothing_without_a_detector_and_says_so) {
+  const VariantPlan plan = plan_variants({{}, {"none"}, false}, kModes, kTechniques);
   EXPECT_THAT(names(plan), ElementsAre("off", "geometry", "rtd"));
   EXPECT_THAT(plan.notes, ElementsAre(HasSubstr("semantic"), HasSubstr("epipolar"), HasSubstr("rtd-paper")));
-  EXPECT_THROW(plan_ablation({{"semantic"}, {"none"}, false}, kModes, {}), service::ConfigError) << "nothing is left";
+  EXPECT_THROW(plan_variants({{"semantic"}, {"none"}, false}, kModes, {}), service::ConfigError) << "nothing is left";
 }
 
-TEST(AblationPlan, names_the_nearest_word_for_an_unknown_one) {
+TEST(Variants, names_the_nearest_word_for_an_unknown_one) {
   EXPECT_THAT(
       [] {
-        plan_ablation({{}, {"depth_chek"}, true}, kModes, kTechniques);
+        plan_variants({{}, {"depth_chek"}, true}, kModes, kTechniques);
       },
       testing::ThrowsMessage<service::ConfigError>(AllOf(HasSubstr("depth_chek"), HasSubstr("'depth_check'"))));
   EXPECT_THAT(
       [] {
-        plan_ablation({{"geometri"}, {}, true}, kModes, kTechniques);
+        plan_variants({{"geometri"}, {}, true}, kModes, kTechniques);
       },
       testing::ThrowsMessage<service::ConfigError>(HasSubstr("did you mean 'geometry'")));
   EXPECT_THAT(
       [] {
-        plan_ablation({{}, {"zzzzzzzzzz"}, true}, kModes, kTechniques);
+        plan_variants({{}, {"zzzzzzzzzz"}, true}, kModes, kTechniques);
       },
       testing::ThrowsMessage<service::ConfigError>(HasSubstr("adaptive_kernel")))
       << "none is near: all are listed";
 }
 
-TEST(AblationPlan, reads_the_techniques_from_what_a_service_prints) {
+TEST(Variants, reads_the_techniques_from_what_a_service_prints) {
   const std::string printed =
       "bus:\n  techniques:\n    nonsense: true\nfilter:\n  mode: rtd  # which\n  techniques:\n"
       "    depth_check: true  # off: no check\n    belief: true\n  orb:\n    levels: 8\n";
@@ -79,7 +79,7 @@ TEST(AblationPlan, reads_the_techniques_from_what_a_service_prints) {
   EXPECT_TRUE(read_techniques(printed, "slam").empty());
 }
 
-TEST(AblationPlan, gives_every_source_a_folder_of_its_own) {
+TEST(Variants, gives_every_source_a_folder_of_its_own) {
   EXPECT_THAT(
       source_names({"tum:/data/walk_xyz/", "tum:/other/walk_xyz?masks=1", "synthetic:office?frames=3", "tum:/.."}),
       ElementsAre("walk_xyz", "walk_xyz_2", "office", "source"));

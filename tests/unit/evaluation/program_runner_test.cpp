@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "services/evaluation/commands/benchmark_runner.hpp"
+#include "services/evaluation/commands/program_runner.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
@@ -13,8 +13,8 @@ namespace {
 using testing::ElementsAre;
 using testing_support::TemporaryFolder;
 
-ProgramTask shell(const std::string& script, const std::string& first_of = "") {
-  return {{"/bin/sh", "-c", script}, first_of};
+ProgramTask shell(const std::string& script) {
+  return [script](int place) { return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(place)}; };
 }
 
 TEST(ProgramRunner, runs_all_and_passes_on_how_each_ended_and_what_it_printed) {
@@ -22,25 +22,19 @@ TEST(ProgramRunner, runs_all_and_passes_on_how_each_ended_and_what_it_printed) {
   std::vector<std::pair<int, std::string>> ended(3);
   EXPECT_TRUE(run_programs({shell("echo a; echo b"), shell("exit 3"), shell("echo c >&2")}, 2, signals,
                            [&](const ProgramResult& result) {
-                             ended[result.task] = {result.exit.code, result.lines.empty() ? "" : result.lines.back()};
+                             ended[result.task] = {result.exit.code, result.last_line};
                            }));
   EXPECT_THAT(ended, ElementsAre(std::pair{0, "b"}, std::pair{3, ""}, std::pair{0, "c"}));
 }
 
-TEST(ProgramRunner, tasks_of_one_word_wait_until_one_has_ended_well) {
+TEST(ProgramRunner, gives_those_that_run_together_places_of_their_own) {
   const TemporaryFolder folder;
-  const std::string file = folder.file("made");
+  const std::string script = "mkdir " + folder.file("") + "$1 && sleep 0.1 && rmdir " + folder.file("") + "$1";
   service::InterruptSignals signals;
-  std::vector<std::size_t> order;
-  std::vector<int> codes(4);
-  run_programs({shell("exit 1", "boxes"), shell("sleep 0.2; touch " + file, "boxes"), shell("test -e " + file, "boxes"),
-                shell("true")},
-               4, signals, [&](const ProgramResult& result) {
-                 order.push_back(result.task);
-                 codes[result.task] = result.exit.code;
-               });
-  EXPECT_THAT(codes, ElementsAre(1, 0, 0, 0)) << "the third needs what the second makes";
-  EXPECT_EQ(order.back(), 2U);
+  std::vector<int> codes(5, -1);
+  run_programs(std::vector<ProgramTask>(5, shell(script)), 2, signals,
+               [&](const ProgramResult& result) { codes[result.task] = result.exit.code; });
+  EXPECT_THAT(codes, testing::Each(0)) << "a place has one program at a time";
 }
 
 TEST(ProgramRunner, a_signal_ends_those_that_run_without_a_call) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,6 +34,9 @@ const NamedDataset* find_dataset(std::string_view name);
 /// The short name of a sequence: fr3_walking_xyz of rgbd_dataset_freiburg3_walking_xyz, crowd of rgbd_bonn_crowd. Empty
 /// when the dataset has no folder of such a name.
 std::string sequence_name(Dataset dataset, const std::string& folder_name);
+
+/// The sequences over which publications give the mean; none: there is no such mean.
+std::span<const char* const> mean_sequences(Dataset dataset);
 
 /// A sequence that can be run.
 struct Sequence {

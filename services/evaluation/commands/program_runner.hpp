@@ -12,25 +12,20 @@
 
 namespace rtd::eval {
 
-/// A program to run.
-struct ProgramTask {
-  std::vector<std::string> command;
-  /// Tasks with the same word wait until one of them has ended well: it makes what the others use. Empty: waits for
-  /// none.
-  std::string first_of;
-};
+/// The command of a program, which has one of the places 0 .. jobs - 1 while it runs.
+using ProgramTask = std::function<std::vector<std::string>(int place)>;
 
-/// How one ended, and the last lines that it printed.
+/// How one ended, and the last line that it printed.
 struct ProgramResult {
   std::size_t task = 0;  ///< index
   process::ProcessExit exit;
   double duration_s = 0;
-  std::vector<std::string> lines;
+  std::string last_line;
 };
 
-/// Runs all tasks, at most `jobs` beside each other, in their order as far as `first_of` allows. `on_done` is called
-/// after each, on this thread. A signal ends those that run, without a call; false then. Throws process::ProcessError
-/// when a program cannot be started.
+/// Runs all tasks in their order, at most `jobs` beside each other; what they print goes to standard error. `on_done`
+/// is called after each, on this thread. A signal ends those that run, without a call; false then. Throws
+/// process::ProcessError when a program cannot be started.
 bool run_programs(const std::vector<ProgramTask>& tasks, int jobs, service::InterruptSignals& signals,
                   const std::function<void(const ProgramResult&)>& on_done);
 

@@ -13,7 +13,7 @@
 #include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
-#include "services/evaluation/core/benchmark/dataset.hpp"
+#include "services/evaluation/core/datasets/dataset.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;

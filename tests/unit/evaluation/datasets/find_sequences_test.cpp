@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 
 #include "common/service/config.hpp"
-#include "services/evaluation/core/benchmark/dataset.hpp"
-#include "tests/unit/evaluation/benchmark/dataset_folder.hpp"
+#include "services/evaluation/core/datasets/dataset.hpp"
+#include "tests/unit/evaluation/datasets/dataset_folder.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/benchmark/openloris.hpp"
+#include "services/evaluation/core/datasets/openloris.hpp"
 
 #include <gmock/gmock.h>
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/geometry/trajectory.hpp"
-#include "tests/unit/evaluation/benchmark/dataset_folder.hpp"
+#include "tests/unit/evaluation/datasets/dataset_folder.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/benchmark/dataset.hpp"
+#include "services/evaluation/core/datasets/dataset.hpp"
 
 #include <algorithm>
 #include <regex>
@@ -30,6 +30,19 @@ std::string sequence_name(Dataset dataset, const std::string& folder_name) {
       return std::regex_match(folder_name, kOpenloris) ? folder_name : "";
   }
   return "";
+}
+
+std::span<const char* const> mean_sequences(Dataset dataset) {
+  static constexpr std::array kBonnMean{"balloon",
+                                        "balloon2",
+                                        "crowd",
+                                        "crowd2",
+                                        "person_tracking",
+                                        "person_tracking2",
+                                        "moving_nonobstructing_box",
+                                        "moving_nonobstructing_box2"};
+  if (dataset == Dataset::kBonn) return kBonnMean;
+  return {};
 }
 
 }  // namespace rtd::eval
