@@ -282,7 +282,7 @@ TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "67"}), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("synthetic:office"), HasSubstr("every point (--filter off)"),
                                    HasSubstr("static points (--filter rtd)"), HasSubstr("next:")));
-  EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("<svg"));
+  EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("\"kind\":\"comparison\""));
   for (const char* mode : {"off", "rtd"}) EXPECT_TRUE(fs::exists(out_ + "/" + mode + "/report.html")) << mode;
 }
 

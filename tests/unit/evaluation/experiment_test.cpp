@@ -6,6 +6,7 @@
 
 #include "common/service/config.hpp"
 #include "services/evaluation/commands/experiment_plan.hpp"
+#include "tests/support/evaluation_page/rendered.hpp"
 #include "tests/unit/evaluation/page_data.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
@@ -215,6 +216,23 @@ TEST(ExperimentPage, has_everything_in_it_even_when_nothing_is_known) {
   EXPECT_EQ(data["kind"], "experiment");
   EXPECT_EQ(data["rows"][1]["failure"], "</script><b>bad</b>");
   EXPECT_EQ(data["parts"][0]["source"], kSource);
+}
+
+TEST(ExperimentPage, draws_the_modes_what_each_technique_is_worth_and_the_table) {
+  if (!testing_support::has_node()) GTEST_SKIP() << "node is not installed; deploy/setup.sh --viewers installs it";
+  const TemporaryFolder folder;
+  const auto shown = [&](const Experiment& experiment) {
+    return testing_support::rendered(experiment_html(experiment, nullptr), folder.file("page.html"));
+  };
+  Experiment experiment = ablation();
+  EXPECT_THAT(shown(experiment), HasSubstr("RTD-SLAM ablation")) << "nothing is known yet";
+  add(experiment, "off", 0.4);
+  add(experiment, "rtd", 0.004);
+  add(experiment, "without belief", 0.008);
+  add(experiment, "without belief", 0.1).failure = "<b>bad</b>";
+  EXPECT_THAT(shown(experiment), AllOf(HasSubstr("<svg"), HasSubstr("Error of each mode"), HasSubstr("40.00 cm"),
+                                       HasSubstr("x 2.00"), HasSubstr("without belief: one frame alone"),
+                                       HasSubstr("&lt;b&gt;bad"), HasSubstr("<td>0.4000</td>"), Not(HasSubstr("NaN"))));
 }
 
 TEST(ExperimentComparison, calls_a_change_better_or_worse_only_beyond_the_spread_of_three_runs) {

@@ -60,6 +60,16 @@ void add_shares(const Report& report, Figures& figures) {
   figures["share.lost"] = std::max(0.0, lost) / frames;
 }
 
+/// Of the finite values.
+Spread spread_of(const std::vector<double>& values) {
+  std::vector<double> known;
+  std::ranges::copy_if(values, std::back_inserter(known), [](double v) { return std::isfinite(v); });
+  if (known.empty()) return {};
+  std::ranges::sort(known);
+  const std::size_t n = known.size();
+  return {n % 2 == 1 ? known[n / 2] : (known[n / 2 - 1] + known[n / 2]) / 2, known.front(), known.back()};
+}
+
 ExperimentRow row_of(const Subject& subject, const std::string& variant, const Experiment& experiment) {
   ExperimentRow row{subject.name, variant};
   std::map<std::string, std::vector<double>> values;

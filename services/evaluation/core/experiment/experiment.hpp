@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,7 +12,6 @@
 
 #include "services/evaluation/core/datasets/dataset.hpp"
 #include "services/evaluation/core/experiment/variants.hpp"
-#include "services/evaluation/core/report/spread.hpp"
 
 namespace rtd::eval {
 
@@ -58,6 +58,13 @@ struct Experiment {
 const ExperimentRun* find_run(const Experiment& experiment, const std::string& source, const std::string& variant,
                               int run);
 
+/// Median and extremes of a figure over several runs; NaN when it is unknown.
+struct Spread {
+  double median = std::numeric_limits<double>::quiet_NaN();
+  double min = std::numeric_limits<double>::quiet_NaN();
+  double max = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// All runs of a variant on a subject.
 struct ExperimentRow {
   std::string subject, variant;
@@ -94,6 +101,9 @@ Experiment read_experiment(const std::string& file);
 
 /// What was left out, what failed, what is unexpected.
 std::vector<std::string> notes_of(const Experiment& experiment);
+
+/// The value in a format such as "{:.3f}"; "-" when it is unknown.
+std::string number_text(double value, const char* format);
 
 /// Headings and cells of the table; "-" = unknown. `before`: of --compare, else null.
 struct ExperimentTable {

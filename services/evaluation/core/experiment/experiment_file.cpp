@@ -3,6 +3,7 @@
 #include "common/io/input_file.hpp"
 #include "common/service/config.hpp"
 #include "services/evaluation/core/experiment/experiment.hpp"
+#include "services/evaluation/core/trajectory/evaluation.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -20,6 +21,13 @@ Json run_json(const ExperimentRun& run) {
 ExperimentRun run_from(const nlohmann::json& json) {
   return {json.at("source"),  json.at("variant"), json.at("run"),       json.at("duration_s"),
           json.at("failure"), json.at("figures"), json.at("trajectory")};
+}
+
+/// Unknown values are null.
+Json spread_json(const Spread& spread) {
+  return {{"median", number_or_null(spread.median)},
+          {"min", number_or_null(spread.min)},
+          {"max", number_or_null(spread.max)}};
 }
 
 Json row_json(const ExperimentRow& row) {

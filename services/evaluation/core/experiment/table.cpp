@@ -43,6 +43,13 @@ constexpr std::array kColumns{
     Column{"delay_s_max", "delay [s]", "{:.2f}", 1, Show::kMost, true},
 };
 
+/// "0.0024 (0.0021..0.0031)", or one number when all are equal as they are written.
+std::string spread_text(const Spread& spread, const char* format) {
+  const std::string median = number_text(spread.median, format), min = number_text(spread.min, format),
+                    max = number_text(spread.max, format);
+  return min == max ? median : fmt::format("{} ({}..{})", median, min, max);
+}
+
 /// "97.5/2.5/0/0/0": the medians.
 std::string states_cell(const ExperimentRow& row, const Column& column) {
   std::string text;
@@ -100,6 +107,28 @@ std::string markdown_line(const Cells& cells) {
   return text + "\n";
 }
 
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+/// Lines of cells below each other: the first column left-aligned, the rest right.
+std::string aligned_table(const std::vector<Cells>& lines) {
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) widths[i] = std::max(widths[i], width_of(line[i]));
+  }
+  std::string text;
+  for (const auto& line : lines) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      text += i == 0 ? fmt::format("  {:<{}}", line[i], widths[i]) : fmt::format("  {:>{}}", line[i], widths[i]);
+    }
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  }
+  return text;
+}
+
 /// A subject with the cells of its rows.
 struct Part {
   std::string name, source;
@@ -125,6 +154,10 @@ std::string source_text(const Part& part) {
 }
 
 }  // namespace
+
+std::string number_text(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
 
 std::vector<std::string> notes_of(const Experiment& experiment) {
   std::vector<std::string> notes = experiment.notes;

@@ -7,12 +7,43 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/camera/source_factory.hpp"
+#include "common/camera/source_schemes.hpp"
 #include "common/geometry/pose_list.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "services/evaluation/core/report/scene_depth.hpp"
 
 namespace rtd::eval {
 namespace {
+
+constexpr int kFrames = 60, kFrameStep = 15, kPixelStep = 8;
+
+void add_depths(const vision::RgbdImage& image, std::vector<double>& depths_m) {
+  for (int row = 0; row < image.depth.rows; row += kPixelStep) {
+    for (int column = 0; column < image.depth.cols; column += kPixelStep) {
+      const std::uint16_t depth = image.depth.at<std::uint16_t>(row, column);
+      if (depth > 0) depths_m.push_back(depth * image.depth_scale_m);
+    }
+  }
+}
+
+/// How far away the background of a source is: the upper quartile of the depths in some of its first frames. Only of
+/// TUM folders and synthetic scenes; none where no frame can be read.
+std::optional<double> scene_depth_m(const std::string& source_uri) {
+  const bool folder = camera::is_of_kind(source_uri, camera::SourceKind::kFolder);
+  if (!folder && !run_record::is_synthetic(source_uri)) return std::nullopt;
+  std::vector<double> depths_m;
+  try {
+    const auto source = camera::make_source(source_uri);
+    for (int i = 0; i < kFrames; ++i) {
+      const auto frame = source->next();
+      if (!frame) break;
+      if (i % kFrameStep == 0) add_depths(frame->image, depths_m);
+    }
+  } catch (const std::exception&) {  // the source is no longer there: the depth is not known
+  }
+  if (depths_m.empty()) return std::nullopt;
+  return percentile(depths_m, 0.75);
+}
 
 constexpr std::array<const char*, msg::kStageFilterTotal + 1> kFilterStageNames{
     "filter.wait_detections", "filter.extract", "filter.masks", "filter.ego_motion",

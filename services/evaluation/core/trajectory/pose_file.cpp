@@ -22,7 +22,6 @@
 #include "common/recordings/open.hpp"
 #include "common/recordings/parts.hpp"
 #include "services/evaluation/core/trajectory/recorded_poses.hpp"
-#include "services/evaluation/core/trajectory/recorded_results.hpp"
 
 namespace rtd::eval {
 namespace {
