@@ -93,10 +93,13 @@ std::string html(const Page& page, std::size_t most_bytes) {
   json layers = json::array();
   for (const Layer& layer : page.layers) layers.push_back(to_json(layer, share(layer, scale)));
   const json scene = {{"title", page.title}, {"z_up", page.z_up}, {"facts", page.facts}, {"layers", layers}};
-  const std::string mark = "@SCENE@";
-  const std::size_t at = whole.find(mark);
-  return whole.substr(0, at) + harmless(scene.dump(-1, ' ', false, json::error_handler_t::replace)) +
-         whole.substr(at + mark.size());
+  return filled(whole, "@SCENE@", scene.dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+std::string filled(std::string_view page, std::string_view mark, std::string data) {
+  const std::size_t at = page.find(mark);
+  std::string whole(page.substr(0, at));
+  return whole.append(harmless(std::move(data))).append(page.substr(at + mark.size()));
 }
 
 }  // namespace rtd::map_page

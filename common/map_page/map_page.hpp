@@ -39,4 +39,7 @@ std::string html(const Page& page, std::size_t most_bytes = 5'000'000);
 /// The page without its content: `@SCENE@` stands where the scene belongs, in JSON with "<" written as an escape.
 std::string_view html_template();
 
+/// `page` with `data`, in JSON, in place of `mark` in a script element, which no text in the data can end.
+std::string filled(std::string_view page, std::string_view mark, std::string data);
+
 }  // namespace rtd::map_page

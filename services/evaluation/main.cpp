@@ -4,9 +4,8 @@
 #include <iostream>
 
 #include "common/service/command_line.hpp"
-#include "services/evaluation/commands/ablate_command.hpp"
-#include "services/evaluation/commands/benchmark_command.hpp"
 #include "services/evaluation/commands/eval_command.hpp"
+#include "services/evaluation/commands/experiment_command.hpp"
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/detector/eval_detector_command.hpp"
 
@@ -17,8 +16,7 @@ using namespace rtd;
 struct Requests {
   eval::EvalOptions trajectory;
   eval::EvalDetectorOptions detector;
-  eval::AblateOptions ablate;
-  eval::BenchmarkOptions benchmark;
+  eval::ExperimentOptions ablate, benchmark;
   eval::ReportOptions report;
   eval::CompareOptions compare;
 };
@@ -33,8 +31,8 @@ int report(const eval::ReportOptions& options) {
 int dispatch(const CLI::App& app, const Requests& requests) {
   if (app.got_subcommand("trajectory")) return eval::run_eval(requests.trajectory, std::cout, std::cerr);
   if (app.got_subcommand("detector")) return eval::run_eval_detector(requests.detector, std::cout, std::cerr);
-  if (app.got_subcommand("ablate")) return eval::run_ablate(requests.ablate);
-  if (app.got_subcommand("benchmark")) return eval::run_benchmark(requests.benchmark);
+  if (app.got_subcommand("ablate")) return eval::run_experiment(requests.ablate);
+  if (app.got_subcommand("benchmark")) return eval::run_experiment(requests.benchmark);
   if (app.got_subcommand("report")) return report(requests.report);
   return eval::run_compare(requests.compare, std::cout, std::cerr);
 }

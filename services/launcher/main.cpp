@@ -51,7 +51,7 @@ constexpr std::array kToolCommands = {
     ExternalCommand{"eval-detector", "rtd-eval", "Measure precision, recall and time of detector models", "Tools",
                     "detector"},
     ExternalCommand{"ablate", "rtd-eval", "Compare all filter modes, and mode rtd without each technique"},
-    ExternalCommand{"benchmark", "rtd-eval", "Run all modes on TUM, Bonn or OpenLORIS data, beside published figures"},
+    ExternalCommand{"benchmark", "rtd-eval", "Run all modes on TUM, Bonn or OpenLORIS data"},
     ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json"},
     ExternalCommand{"info", "rtd-recording", "Show what a recording contains: topics, rates, losses, damage"},
     ExternalCommand{"diff", "rtd-recording", "Compare two recordings or two trajectories (TUM format)"},

@@ -26,7 +26,7 @@ struct EvalDetectorOptions {
   std::string names_file;                      ///< class names, one per line; empty: those of the model
   std::vector<std::string> models;             ///< files or names; empty: the default model
   std::vector<std::string> engines = {"cpu"};  ///< each model with each of them (detector::parse_engine)
-  std::string json, out_dir;                   ///< empty = none
+  std::string json;                            ///< file; empty = none
   double wanted_recall = 0.6;                  ///< of objects of the high motion level
   int step = 1;                                ///< every n-th image
   std::string class_name = "person";           ///< what the masks show

@@ -282,7 +282,7 @@ TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   EXPECT_EQ(rtd_.run({"demo", "--frames", "10", "--out", out_, "--domain", "67"}), 0) << rtd_.output();
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("synthetic:office"), HasSubstr("every point (--filter off)"),
                                    HasSubstr("static points (--filter rtd)"), HasSubstr("next:")));
-  EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("<svg"));
+  EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("\"kind\":\"comparison\""));
   for (const char* mode : {"off", "rtd"}) EXPECT_TRUE(fs::exists(out_ + "/" + mode + "/report.html")) << mode;
 }
 
@@ -296,17 +296,17 @@ TEST_F(EndToEndTest, an_ablation_compares_variants_keeps_its_runs_and_refuses_un
   EXPECT_THAT(rtd_.output(),
               AllOf(HasSubstr("[ 1/2] office, off: ATE"), HasSubstr("geometry"), HasSubstr("precision")));
   const nlohmann::json json = nlohmann::json::parse(text_of(out_ + "/ablation.json"));
-  ASSERT_EQ(json["sources"][0]["rows"].size(), 2U);
-  EXPECT_GT(json["sources"][0]["rows"][1]["ate_rmse_m"]["median"], 0.0);
+  ASSERT_EQ(json["rows"].size(), 2U);
+  EXPECT_GT(json["rows"][1]["figures"]["ate_m"]["median"], 0.0);
+  EXPECT_NE(json["results"][1]["trajectory"], "00000000");
   EXPECT_EQ(json["complete"], true);
-  EXPECT_THAT(text_of(out_ + "/ablation.html"), HasSubstr("<svg"));
+  EXPECT_THAT(text_of(out_ + "/ablation.html"), HasSubstr("\"kind\":\"experiment\""));
   EXPECT_THAT(text_of(out_ + "/ablation.md"), HasSubstr("| geometry |"));
 
   RtdCommand again, wrong;
   ablate.emplace_back("--resume");
   EXPECT_EQ(again.run(ablate), 0);
-  EXPECT_THAT(again.output(), HasSubstr("office, geometry: ATE")) << again.output();
-  EXPECT_THAT(again.output(), HasSubstr("(kept)"));
+  EXPECT_THAT(again.output(), AllOf(HasSubstr("runs to do: 0, kept from earlier calls: 2"), HasSubstr("geometry")));
   EXPECT_EQ(wrong.run({"ablate", "--source", "synthetic:office?frames=8", "--without", "depth_chek", "--out", out_}),
             2);
   EXPECT_THAT(wrong.output(), HasSubstr("did you mean 'depth_check'?"));

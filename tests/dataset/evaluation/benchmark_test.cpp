@@ -88,8 +88,7 @@ class BenchmarkCommand : public ::testing::Test {
   int run(const std::string& dataset, const std::string& more = "") {
     const testing::CommandResult result = testing::run_command(
         "timeout 300 " RTD_EVAL_EXECUTABLE " benchmark " + dataset + " " + (scratch_ / "data").string() +
-        " --program " RTD_OFFLINE_RUN " --detector off --modes off,geometry --runs 1 --jobs 2 --frames " +
-        std::to_string(kFrames) + " --out " + out().string() + " " + more);
+        " --detector off --modes off,geometry --runs 1 --jobs 2 --domain 119 --frames " + std::to_string(kFrames) + " --out " + out().string() + " " + more);
     output_ = result.output;
     return result.exit_code;
   }
@@ -107,17 +106,17 @@ class BenchmarkCommand : public ::testing::Test {
 TEST_F(BenchmarkCommand, measures_a_tum_sequence_once_and_keeps_its_runs) {
   fs::create_symlink(clips_ / "fr1_xyz", data("rgbd_dataset_freiburg1_xyz"));
   ASSERT_EQ(run("tum"), 0) << output_;
-  EXPECT_THAT(output_, AllOf(HasSubstr("fr1_xyz, off, run 1: ATE"), HasSubstr("fr1_xyz, geometry, run 1: ATE")));
+  EXPECT_THAT(output_, AllOf(HasSubstr("fr1_xyz, off: ATE"), HasSubstr("fr1_xyz, geometry: ATE")));
   const nlohmann::json json = results();
   ASSERT_EQ(json["rows"].size(), 2U);
   const nlohmann::json figures = json["rows"][1]["figures"];
   EXPECT_LT(figures["ate_m"]["median"], 0.02);
-  EXPECT_GT(figures["ms"]["median"], 0);
+  EXPECT_GT(figures["slam_ms"]["median"], 0);
   EXPECT_NEAR(figures["share.ok"]["median"].get<double>() + figures["share.lost"]["median"].get<double>() +
                   figures["share.doubtful"]["median"].get<double>() +
                   figures["share.predicted"]["median"].get<double>(),
               1, 1e-9);
-  EXPECT_THAT(page(), AllOf(HasSubstr("NGD-SLAM"), HasSubstr("fr1_xyz")));
+  EXPECT_THAT(page(), HasSubstr("fr1_xyz"));
 
   const std::string compare = " --compare " + (out() / "benchmark.json").string();
   ASSERT_EQ(run("tum", compare), 0) << output_;
@@ -133,7 +132,7 @@ TEST_F(BenchmarkCommand, knows_the_camera_of_bonn_and_continues_without_incomple
   fs::remove(data("rgbd_bonn_balloon") / "groundtruth.txt");
   EXPECT_EQ(run("bonn"), 3) << output_;
   EXPECT_THAT(output_, AllOf(HasSubstr("rgbd_bonn_balloon is left out: it has no groundtruth.txt"),
-                             HasSubstr("crowd, geometry, run 1: ATE 0.0"), Not(HasSubstr("failed"))));
+                             HasSubstr("crowd, geometry: ATE 0.0"), Not(HasSubstr("failed"))));
   EXPECT_EQ(results()["left_out"].size(), 1U);
 }
 

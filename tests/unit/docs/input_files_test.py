@@ -45,7 +45,7 @@ ALLOWED = {
     "common/service/onnxruntime_locator.cpp": "folders of installed libraries",
     "common/service/peer_health.cpp": KERNEL,
     "common/service/standard_streams.hpp": "/dev/null",
-    "services/evaluation/core/benchmark/openloris.cpp": "OpenCV reads a text in memory",
+    "services/evaluation/core/datasets/openloris.cpp": "OpenCV reads a text in memory",
     "services/launcher/core/run/trace_file.cpp": OWN_FOLDER,
     "services/launcher/run/run_setup.cpp": OWN_FOLDER,
     "services/recorder/core/output_files.cpp": OWN_FOLDER,

@@ -13,7 +13,6 @@ namespace rtd::plot {
 namespace {
 
 constexpr double kTickTextSize = 11.5;
-constexpr double kLabelDistance = 15;
 constexpr double kPixelsPerXTick = 90, kPixelsPerYTick = 45;
 
 double step_for(double span, int wanted) {
@@ -85,12 +84,6 @@ Point Chart::at(double x, double y) const {
   return {area_.x + (x - x_.min) / x_.span() * area_.width, area_.y + (y_.max - y) / y_.span() * area_.height};
 }
 
-std::vector<Point> Chart::at(const std::vector<double>& x, const std::vector<double>& y) const {
-  std::vector<Point> points;
-  for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) points.push_back(at(x[i], y[i]));
-  return points;
-}
-
 void Chart::draw_axes(const AxisLabels& labels) {
   const double left = area_.x, right = area_.x + area_.width, top = area_.y, bottom = area_.y + area_.height;
   const std::vector<double> x_ticks = nice_ticks(x_, std::max(2, static_cast<int>(area_.width / kPixelsPerXTick)));
@@ -126,22 +119,11 @@ void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, co
   finish();
 }
 
-void Chart::levels(std::vector<Level> levels) {
-  std::ranges::sort(levels, std::ranges::greater{}, &Level::y);
-  double label_px = area_.y - kLabelDistance;
-  for (const Level& level : levels) {
-    if (!std::isfinite(level.y) || level.y < y_.min || level.y > y_.max) continue;
-    const double right = area_.x + area_.width, py = at(0, level.y).y;
-    label_px = std::max(label_px + kLabelDistance, py + 4);
-    svg_.line({area_.x, py}, {right, py}, level.stroke);
-    svg_.text({right + 6, label_px}, level.label, {level.stroke.colour, kTickTextSize, Anchor::kStart, true});
-  }
-}
-
-void Chart::band(double from_x, double to_x, const std::string& fill, double opacity) {
-  const double from_px = std::clamp(at(from_x, 0).x, area_.x, area_.x + area_.width);
-  const double to_px = std::clamp(at(to_x, 0).x, area_.x, area_.x + area_.width);
-  svg_.rect({from_px, area_.y, std::max(1.5, to_px - from_px), area_.height}, fill, opacity);
+void Chart::level(double y, const std::string& label, const Stroke& stroke) {
+  if (!std::isfinite(y) || y < y_.min || y > y_.max) return;
+  const double right = area_.x + area_.width, y_px = at(0, y).y;
+  svg_.line({area_.x, y_px}, {right, y_px}, stroke);
+  svg_.text({right + 6, y_px + 4}, label, {stroke.colour, kTickTextSize, Anchor::kStart, true});
 }
 
 void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries) {

@@ -28,13 +28,6 @@ struct AxisLabels {
   std::string x, y;  ///< with unit, e.g. "time [s]"
 };
 
-/// A value that a line across the chart marks.
-struct Level {
-  double y = 0;
-  std::string label;
-  Stroke stroke;
-};
-
 /// A framed area with axes that maps data to the drawing.
 class Chart {
  public:
@@ -48,17 +41,11 @@ class Chart {
   void draw_axes(const AxisLabels& labels);
 
   Point at(double x, double y) const;
-  std::vector<Point> at(const std::vector<double>& x, const std::vector<double>& y) const;
-  const Area& area() const { return area_; }
-  const Range& x() const { return x_; }
-  const Range& y() const { return y_; }
 
   /// Line through the data, interrupted where x jumps by more than max_gap_x.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Stroke& stroke, double max_gap_x);
-  /// Horizontal lines over the whole width, labelled at their right ends outside the frame; labels do not overlap.
-  void levels(std::vector<Level> levels);
-  /// Vertical band.
-  void band(double from_x, double to_x, const std::string& fill, double opacity);
+  /// A horizontal line over the whole width, labelled at its right end outside the frame.
+  void level(double y, const std::string& label, const Stroke& stroke);
 
  private:
   Svg& svg_;

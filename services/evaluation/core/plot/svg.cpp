@@ -9,8 +9,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "common/run_record/run_record.hpp"
-
 namespace rtd::plot {
 namespace {
 
@@ -89,11 +87,6 @@ void Svg::polyline(const std::vector<Point>& points, const Stroke& stroke) {
                   attributes(stroke), coordinates(points));
 }
 
-void Svg::polygon(const std::vector<Point>& points, const std::string& fill, double opacity) {
-  body_ +=
-      fmt::format("<polygon fill=\"{}\" fill-opacity=\"{:g}\" points=\"{}\"/>\n", fill, opacity, coordinates(points));
-}
-
 void Svg::rect(const Area& area, const std::string& fill, double opacity, double radius) {
   if (!is_finite({area.x, area.y}) || !is_finite({area.width, area.height})) return;
   body_ += fmt::format(
@@ -127,12 +120,6 @@ void Svg::text(Point at, const std::string& content, const TextStyle& style) {
     body_ += fmt::format(" transform=\"rotate({:g} {} {})\"", style.rotation_deg, number(at.x), number(at.y));
   }
   body_ += ">" + escape_markup(content) + "</text>\n";
-}
-
-void Svg::jpeg(const Area& area, const std::vector<unsigned char>& bytes) {
-  body_ += fmt::format("<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/jpeg;base64,{}\"/>\n",
-                       number(area.x), number(area.y), number(area.width), number(area.height),
-                       run_record::to_base64(bytes));
 }
 
 std::string Svg::str() const {

@@ -7,7 +7,7 @@
 
 namespace rtd::plot {
 
-/// Colours of all pages, for a white background and distinct for colour-blind readers.
+/// Colours, for a white background and distinct for colour-blind readers.
 namespace palette {
 inline constexpr const char* kInk = "#1c2733";
 inline constexpr const char* kMuted = "#64727f";
@@ -15,9 +15,7 @@ inline constexpr const char* kGrid = "#e7ebef";
 inline constexpr const char* kFrame = "#b9c2cb";
 inline constexpr const char* kBlue = "#2367a8";
 inline constexpr const char* kGreen = "#2d9c5f";
-inline constexpr const char* kRed = "#d03a3f";
 inline constexpr const char* kAmber = "#dd8a1d";
-inline constexpr const char* kPurple = "#7a4fa3";
 inline constexpr const char* kTruth = "#9aa5b1";
 }  // namespace palette
 
@@ -63,17 +61,12 @@ class Svg {
 
   void line(Point from, Point to, const Stroke& stroke);
   void polyline(const std::vector<Point>& points, const Stroke& stroke);
-  void polygon(const std::vector<Point>& points, const std::string& fill, double opacity = 1);
   void rect(const Area& area, const std::string& fill, double opacity = 1, double radius = 0);
   void circle(Point centre, double radius, const std::string& fill, const Stroke& outline = {"none", 0});
   /// Many round dots of one colour in one element.
   void dots(const std::vector<Point>& centres, double diameter, const std::string& colour, double opacity = 1);
   void text(Point at, const std::string& content, const TextStyle& style = {});
-  /// Embeds a JPEG.
-  void jpeg(const Area& area, const std::vector<unsigned char>& bytes);
 
-  double width() const { return width_; }
-  double height() const { return height_; }
   /// The drawing, scalable to the width of its container.
   std::string str() const;
   /// The drawing as a complete SVG file.

@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <sstream>
 
 #include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
@@ -52,6 +54,29 @@ Layer read_static_map(std::istream& in) {
     std::memcpy(layer.colors.emplace_back().data(), vertex.data() + kColorAt, 3);
   }
   return layer;
+}
+
+std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most) {
+  std::string line;
+  std::size_t count = 0;
+  bool is_text = false, in_header = true;
+  while (in_header && io::get_line(in, line)) {
+    std::istringstream words(line);
+    std::string key, what;
+    words >> key >> what;
+    if (key == "format") is_text = what == "ascii";
+    if (key == "element" && what == "vertex") words >> count;
+    in_header = key != "end_header";
+  }
+  std::vector<Eigen::Vector3d> points_m;
+  if (in_header || !is_text) return points_m;
+  const std::size_t stride = count / std::max<std::size_t>(1, most) + 1;
+  for (std::size_t i = 0; i < count && io::get_line(in, line); ++i) {
+    Eigen::Vector3d p;
+    if (i % stride != 0 || !(std::istringstream(line) >> p.x() >> p.y() >> p.z())) continue;
+    if (p.allFinite()) points_m.push_back(p);
+  }
+  return points_m;
 }
 
 map_page::Page map_page_of(const Run& run, const RunSummary& summary) {

@@ -14,7 +14,6 @@
 #include "common/service/json_text.hpp"
 #include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/map_page_of_run.hpp"
-#include "services/evaluation/core/report/map_picture.hpp"
 
 namespace rtd::eval {
 namespace {

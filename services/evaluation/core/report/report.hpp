@@ -25,8 +25,7 @@ void choose_trajectory(Run& run, const std::string& folder);
 /// The content of report.json (keys: docs/evaluation.md). Every key is always there; what is unknown is null.
 nlohmann::ordered_json report_json(const Run& run, const RunSummary& summary);
 
-/// The report page of one run: one HTML file with everything inside (styles, SVG charts, JPEG as data URIs), no
-/// references to the outside, no script.
+/// The report page of one run: page.html with everything inside, no references to the outside.
 std::string report_html(const Run& run, const RunSummary& summary);
 
 /// The table that ends a run on the terminal.

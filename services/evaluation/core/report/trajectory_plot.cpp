@@ -8,6 +8,8 @@
 #include <array>
 #include <cmath>
 
+#include "services/evaluation/core/plot/chart.hpp"
+
 namespace rtd::eval {
 namespace {
 
@@ -20,6 +22,20 @@ namespace palette = plot::palette;
 constexpr std::size_t kMaxPathPoints = 4000;
 constexpr int kColourSteps = 32;
 constexpr std::array<const char*, 3> kAxisNames{"x [m]", "y [m]", "z [m]"};
+
+constexpr double kMaxGapS = 0.5;  // longer times without poses interrupt a line
+
+/// A length unit that gives readable numbers.
+struct LengthUnit {
+  const char* name;
+  double per_metre;
+};
+
+LengthUnit length_unit(double largest_m) {
+  if (largest_m < 0.02) return {"mm", 1000};
+  if (largest_m < 1.0) return {"cm", 100};
+  return {"m", 1};
+}
 
 double seconds(std::int64_t ns) {
   return static_cast<double>(ns) * 1e-9;
@@ -36,14 +52,30 @@ plot::Range range_along(const std::vector<Eigen::Vector3d>& points_m, int axis) 
   return plot::range_of(each(points_m, [axis](const Eigen::Vector3d& p) { return p[axis]; }));
 }
 
-std::vector<Eigen::Vector3d> all_points(const std::vector<PathCurve>& curves) {
-  std::vector<Eigen::Vector3d> all_m;
-  for (const PathCurve& curve : curves) all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
-  return all_m;
+/// The two world axes along which a path extends most; a path is drawn by its projection on them.
+struct PlaneView {
+  int horizontal = 0, vertical = 1;  ///< 0 x, 1 y, 2 z
+};
+
+PlaneView widest_plane(const std::vector<Eigen::Vector3d>& points_m) {
+  std::array<int, 3> axes{0, 1, 2};
+  std::ranges::stable_sort(
+      axes, [&](int a, int b) { return range_along(points_m, a).span() > range_along(points_m, b).span(); });
+  return {axes[0], axes[1]};
 }
 
-PlaneView plane_of(const std::vector<PathCurve>& curves) {
-  return curves.empty() ? PlaneView{} : widest_plane(curves.front().points_m);
+/// A path to draw without errors.
+struct PathCurve {
+  std::vector<std::int64_t> stamps_ns;
+  std::vector<Eigen::Vector3d> points_m;
+  plot::Stroke stroke;
+};
+
+PathCurve path_of(const Trajectory& trajectory) {
+  PathCurve curve;
+  curve.stamps_ns = stamps_of(trajectory);
+  for (const StampedPose& pose : trajectory) curve.points_m.push_back(pose.T_world_body.translation());
+  return curve;
 }
 
 plot::Range padded(const plot::Range& range) {
@@ -116,50 +148,6 @@ double colour_scale_end_m(const AteResult& ate) {
   return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
 }
 
-}  // namespace
-
-LengthUnit length_unit(double largest_m) {
-  if (largest_m < 0.02) return {"mm", 1000};
-  if (largest_m < 1.0) return {"cm", 100};
-  return {"m", 1};
-}
-
-std::string length_text(double length_m) {
-  if (!std::isfinite(length_m)) return "unknown";
-  const LengthUnit unit = length_unit(length_m);
-  return fmt::format("{:.2f} {}", length_m * unit.per_metre, unit.name);
-}
-
-PlaneView widest_plane(const std::vector<Eigen::Vector3d>& points_m) {
-  std::array<int, 3> axes{0, 1, 2};
-  std::ranges::stable_sort(
-      axes, [&](int a, int b) { return range_along(points_m, a).span() > range_along(points_m, b).span(); });
-  return {axes[0], axes[1]};
-}
-
-PathCurve path_of(const Trajectory& trajectory) {
-  PathCurve curve;
-  curve.stamps_ns = stamps_of(trajectory);
-  for (const StampedPose& pose : trajectory) curve.points_m.push_back(pose.T_world_body.translation());
-  return curve;
-}
-
-Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
-  Trajectory part;
-  std::ranges::copy_if(trajectory, std::back_inserter(part),
-                       [&](const StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
-  return part;
-}
-
-double fitting_height(const std::vector<PathCurve>& curves, double width) {
-  constexpr double kMarginX = 150, kMarginY = 76, kLowest = 400, kHighest = 640;
-  const std::vector<Eigen::Vector3d> all_m = all_points(curves);
-  const PlaneView plane = plane_of(curves);
-  const double across = range_along(all_m, plane.horizontal).span();
-  const double up = range_along(all_m, plane.vertical).span();
-  return std::clamp(kMarginY + (width - kMarginX) * 1.1 * up / across, kLowest, kHighest);
-}
-
 void draw_error_path(plot::Svg& svg, const Area& area, const AteResult& ate, const Trajectory& groundtruth) {
   PathCurve truth = path_of(groundtruth);
   truth.stroke = {palette::kTruth, 2.2};
@@ -184,45 +172,34 @@ void draw_error_path(plot::Svg& svg, const Area& area, const AteResult& ate, con
                          {max_m * unit.per_metre, fmt::format("error [{}]", unit.name), ate.error_m.max > max_m});
 }
 
-void draw_paths(plot::Svg& svg, const Area& area, const std::vector<PathCurve>& curves) {
-  std::vector<plot::LegendEntry> legend;
-  for (const PathCurve& curve : curves) {
-    if (!curve.points_m.empty()) legend.push_back({curve.label, curve.colour});
-  }
-  const PlaneView plane = plane_of(curves);
-  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 14, area.height - 30 - 46};
-  const Chart chart = path_chart(svg, frame, all_points(curves), plane);
-  for (PathCurve curve : curves) {
-    curve.stroke.colour = curve.colour;
-    draw_path(svg, chart, curve, plane);
-  }
-  plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
+/// The position error over time, with a line at its RMSE.
+void draw_errors_over_time(plot::Svg& svg, const Area& area, const AteResult& ate) {
+  const LengthUnit unit = length_unit(ate.error_m.max);
+  const auto time_s = [&](const AtePoint& p) { return seconds(p.stamp_ns - ate.points.front().stamp_ns); };
+  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 106, area.height - 30 - 46};
+  Chart chart(svg, frame, {0, std::max(time_s(ate.points.back()), 1e-3)},
+              {0, std::max(ate.error_m.max, 1e-6) * unit.per_metre * 1.06});
+  chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
+  chart.curve(each(ate.points, time_s), each(ate.points, [&](const AtePoint& p) { return p.error_m * unit.per_metre; }),
+              {palette::kBlue, 1.6}, kMaxGapS);
+  const double rmse = ate.error_m.rmse * unit.per_metre;
+  chart.level(rmse, fmt::format("RMSE {:.3g} {}", rmse, unit.name), {palette::kBlue, 1.2, "6 4"});
+  plot::draw_legend(svg, {frame.x, area.y + 14}, {{"position error", palette::kBlue}});
 }
 
-void draw_errors_over_time(plot::Svg& svg, const Area& area, const std::vector<ErrorCurve>& curves,
-                           std::int64_t start_ns, double duration_s) {
-  double max_m = 0;
-  std::vector<plot::LegendEntry> legend;
-  for (const ErrorCurve& curve : curves) {
-    if (curve.ate->error_m.count > 0) max_m = std::max(max_m, curve.ate->error_m.max);
-    legend.push_back({curve.label, curve.colour});
-  }
-  const LengthUnit unit = length_unit(max_m);
-  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 106, area.height - 30 - 46};
-  Chart chart(svg, frame, {0, std::max(duration_s, 1e-3)}, {0, std::max(max_m, 1e-6) * unit.per_metre * 1.06});
-  chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
-  for (const ErrorCurve& curve : curves) {
-    chart.curve(each(curve.ate->points, [&](const AtePoint& p) { return seconds(p.stamp_ns - start_ns); }),
-                each(curve.ate->points, [&](const AtePoint& p) { return p.error_m * unit.per_metre; }),
-                {curve.colour, 1.6}, kMaxGapS);
-  }
-  std::vector<plot::Level> levels;
-  for (const ErrorCurve& curve : curves) {
-    const double rmse = curve.ate->error_m.rmse * unit.per_metre;
-    levels.push_back({rmse, fmt::format("RMSE {:.3g} {}", rmse, unit.name), {curve.colour, 1.2, "6 4"}});
-  }
-  chart.levels(levels);
-  plot::draw_legend(svg, {frame.x, area.y + 14}, legend);
+}  // namespace
+
+std::string length_text(double length_m) {
+  if (!std::isfinite(length_m)) return "unknown";
+  const LengthUnit unit = length_unit(length_m);
+  return fmt::format("{:.2f} {}", length_m * unit.per_metre, unit.name);
+}
+
+Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int64_t last_ns) {
+  Trajectory part;
+  std::ranges::copy_if(trajectory, std::back_inserter(part),
+                       [&](const StampedPose& p) { return p.stamp_ns >= first_ns && p.stamp_ns <= last_ns; });
+  return part;
 }
 
 std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, const std::string& title) {
@@ -235,8 +212,7 @@ std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, 
   if (ate.points.empty()) return svg.document();
   const std::int64_t first_ns = ate.points.front().stamp_ns, last_ns = ate.points.back().stamp_ns;
   draw_error_path(svg, {10, 76, 880, 590}, ate, within(groundtruth, first_ns, last_ns));
-  draw_errors_over_time(svg, {10, 680, 880, 270}, {{"position error", palette::kBlue, &ate}}, first_ns,
-                        seconds(last_ns - first_ns));
+  draw_errors_over_time(svg, {10, 680, 880, 270}, ate);
   return svg.document();
 }
 

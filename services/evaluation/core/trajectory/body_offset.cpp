@@ -80,8 +80,8 @@ Eigen::Vector3d fit_lever_arm(const MotionPairs& pairs, const Eigen::Matrix3d& R
   for (const MotionPair& pair : pairs) {
     const Eigen::Matrix3d turn = pair.T_body_from_to.linear() - Eigen::Matrix3d::Identity();
     normal += turn.transpose() * turn;
-    right += turn.transpose() *
-             (R_body_camera * pair.T_camera_from_to.translation() - pair.T_body_from_to.translation());
+    right +=
+        turn.transpose() * (R_body_camera * pair.T_camera_from_to.translation() - pair.T_body_from_to.translation());
   }
   return normal.ldlt().solve(right);
 }

@@ -49,7 +49,7 @@ inline constexpr std::size_t kFewestAtePoses = 3;
 /// All errors of an estimate compared with its ground truth.
 struct Evaluation {
   std::size_t estimate_poses = 0, groundtruth_poses = 0;
-  AteResult ate;                    ///< of the positions as they are
+  AteResult ate;                     ///< of the positions as they are
   std::optional<BodyOffset> offset;  ///< taken into account in what follows
   RpeResult rpe_per_second, rpe_per_frame, rpe_per_metre;
   Drift drift;

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
 #include "common/recordings/reader.hpp"
+#include "services/evaluation/core/integrity/published_pose.hpp"
 
 namespace rtd::eval {
 
@@ -28,5 +30,16 @@ struct RecordedPoses {
 /// Throws geometry::TrajectoryError: nothing fits, or several do (it lists them), a pose that is none, or a frame with
 /// several parents.
 RecordedPoses read_recorded_poses(recordings::Reader& recording, const PoseChoice& choice);
+
+/// The results of slam in a recording (topic rtd/tracking), one for each frame, in the order of their stamps.
+struct RecordedResults {
+  std::vector<PublishedPose> published;
+  std::vector<std::string> damages;  ///< what could not be read, one line each
+};
+
+/// The topic that is chosen, if it has results of slam.
+std::optional<std::string> topic_of_results(const recordings::Reader& recording, const PoseChoice& choice);
+
+RecordedResults read_recorded_results(recordings::Reader& recording, const std::string& topic);
 
 }  // namespace rtd::eval

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+namespace rtd::eval::testing_support {
+
+/// Whether node is installed, which runs the scripts of pages.
+bool has_node();
+
+/// What a page of the evaluation shows: the markup that its script makes. A broken script fails the test.
+std::string rendered(const std::string& html, const std::string& scratch_file);
+
+}  // namespace rtd::eval::testing_support
