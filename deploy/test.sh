@@ -2,16 +2,22 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs missing packages, builds everything and runs all tests. Arguments are passed to ctest,
-# e.g. deploy/test.sh -L unit
+# Installs missing packages, builds everything and runs the tests, with --all also those labelled nightly. Other
+# arguments are passed to ctest, e.g. deploy/test.sh -L unit
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh
 . "$root/deploy/environment.sh"
 
 if [ "${1:-}" = "--help" ]; then
-  echo "Usage: deploy/test.sh [ctest arguments]   e.g. -L unit, -L 'unit|component', -R camera"
+  echo "Usage: deploy/test.sh [--all] [ctest arguments]   e.g. -L unit, -L 'unit|component', -R camera"
+  echo "  --all   also the tests labelled nightly: more scenes and vendors, packages, counts of instructions"
   exit 0
+fi
+chosen=(-LE nightly)
+if [ "${1:-}" = "--all" ]; then
+  chosen=()
+  shift
 fi
 
 # What did not run, and why. ctest itself names only executables of which every check was skipped.
@@ -32,7 +38,7 @@ build_release ON
 built=$SECONDS
 
 status=0
-ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "$@" || status=$?
+ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "${chosen[@]}" "$@" || status=$?
 list_skipped
 echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then

@@ -6,9 +6,14 @@
 #     Static library, includes from the repository root. BRIEF: works at the start, at the end or on demand, and for a
 #     frame only a few calls, without a loop over pixels, points or bytes. Taken for granted of executables' own sources.
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
-#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL])
+#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL | WAITS]
+#            [NIGHTLY filter])
 #     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.
+#     NIGHTLY: checks by their names in googletest. LABEL.NAME.nightly runs them, and `deploy/test.sh` only with --all.
 #     The targets rtd_unit_tests, rtd_component_tests and so on build all tests of a label.
+#   rtd_test_part(LABEL.NAME PART filter [RUN_SERIAL ON | TIMEOUT seconds...])
+#     LABEL.NAME.PART runs these checks of a program, with these properties instead of those of LABEL.NAME. The part
+#     nightly has that label too.
 #   rtd_bench(NAME SOURCES... LIBS...)
 
 set(CMAKE_CXX_STANDARD 20)
@@ -108,7 +113,7 @@ function(rtd_test name)
   if(NOT RTD_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL;PARALLEL;WAITS" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;PARALLEL;WAITS" "LABEL;NIGHTLY;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} rtd_test_main)
   rtd_common_target(${name})
@@ -140,6 +145,31 @@ function(rtd_test name)
   elseif(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
+  if(ARG_NIGHTLY)
+    rtd_test_part(${ARG_LABEL}.${name} nightly "${ARG_NIGHTLY}")
+  endif()
+endfunction()
+
+function(rtd_test_part test part filter)
+  get_test_property(${test} RTD_PARTS parts)
+  if(NOT parts)
+    set(parts "")
+  endif()
+  list(APPEND parts "${filter}")
+  list(JOIN parts ":" others)
+  string(REGEX REPLACE "^[a-z]+\\." "" program ${test})
+  add_test(NAME ${test}.${part} COMMAND ${program})
+  foreach(property LABELS SKIP_RETURN_CODE TIMEOUT COST RESOURCE_LOCK RUN_SERIAL)
+    get_test_property(${test} ${property} value)
+    if(value)
+      set_property(TEST ${test}.${part} PROPERTY ${property} ${value})
+    endif()
+  endforeach()
+  if(part STREQUAL "nightly")
+    set_property(TEST ${test}.${part} APPEND PROPERTY LABELS nightly)
+  endif()
+  set_tests_properties(${test}.${part} PROPERTIES ENVIRONMENT "GTEST_FILTER=${filter}" ${ARGN})
+  set_tests_properties(${test} PROPERTIES RTD_PARTS "${parts}" ENVIRONMENT "GTEST_FILTER=-${others}")
 endfunction()
 
 function(rtd_bench name)
