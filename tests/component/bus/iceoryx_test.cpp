@@ -22,7 +22,7 @@ namespace rtd::bus {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::shared_ptr<Bus> connect_iceoryx(const std::string& vendor = "cyclonedds") {
   BusOptions options;
