@@ -21,7 +21,7 @@
 namespace rtd::detector {
 namespace {
 
-using testing::SmallFrames;
+using rtd::testing::SmallFrames;
 
 constexpr InputSize kInput{160, 128};
 constexpr int kClasses = 8, kBins = 7;  // 3 (5 + classes) planes are more than classes + 4 bins
@@ -34,7 +34,7 @@ struct Answer {
 
 class Attack {
  public:
-  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
+  explicit Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
 
   int run() {
     while (watch_.more()) {
@@ -112,8 +112,8 @@ class Attack {
     return numbers;
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   RollFeedback roll_{RollConfig()};
   cv::Mat blob_;
   std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
