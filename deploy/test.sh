@@ -2,16 +2,26 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Installs missing packages, builds everything and runs all tests. Arguments are passed to ctest,
-# e.g. deploy/test.sh -L unit
+# Installs missing packages, builds everything and runs the tests, with --all also those labelled nightly. Other
+# arguments are passed to ctest, e.g. deploy/test.sh -L unit
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 # shellcheck source=deploy/environment.sh
 . "$root/deploy/environment.sh"
 
 if [ "${1:-}" = "--help" ]; then
-  echo "Usage: deploy/test.sh [ctest arguments]   e.g. -L unit, -L 'unit|component', -R camera"
+  echo "Usage: deploy/test.sh [--all] [ctest arguments]   e.g. -L unit, -L 'unit|component', -R camera"
+  echo "  --all   also the tests labelled nightly: more scenes and vendors, packages, counts of instructions; and bounds on time,"
+  echo "          which only a quiet machine keeps"
   exit 0
+fi
+chosen=(-LE nightly)
+targets=(--target all)
+if [ "${1:-}" = "--all" ]; then
+  chosen=()
+  targets+=(rtd_benches)
+  export RTD_TIME_BOUNDS=1
+  shift
 fi
 
 # What did not run, and why. ctest itself names only executables of which every check was skipped.
@@ -28,11 +38,12 @@ list_skipped() {
 started=$SECONDS
 "$root/deploy/setup.sh" --no-models
 echo "test: building into build/release"
-build_release ON
+build_release ON "${targets[@]}"
 built=$SECONDS
 
 status=0
-ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "$@" || status=$?
+# One more than there are cores: tests of several processes mostly wait.
+ctest --test-dir "$root/build/release" -j "$(($(nproc) + 1))" --output-on-failure --no-tests=error "${chosen[@]}" "$@" || status=$?
 list_skipped
 echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then

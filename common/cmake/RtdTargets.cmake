@@ -6,10 +6,16 @@
 #     Static library, includes from the repository root. BRIEF: works at the start, at the end or on demand, and for a
 #     frame only a few calls, without a loop over pixels, points or bytes. Taken for granted of executables' own sources.
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
-#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL])
+#   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL | WAITS]
+#            [NIGHTLY filter])
 #     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.
+#     NIGHTLY: checks by their names in googletest. LABEL.NAME.nightly runs them, and `deploy/test.sh` only with --all.
 #     The targets rtd_unit_tests, rtd_component_tests and so on build all tests of a label.
+#   rtd_test_part(LABEL.NAME PART filter [RUN_SERIAL ON | RESOURCE_LOCK processes | RESOURCE_LOCK runs])
+#     LABEL.NAME.PART runs these checks of a program, with these properties instead of those of LABEL.NAME. The part
+#     nightly has that label too.
 #   rtd_bench(NAME SOURCES... LIBS...)
+#     Built by the target rtd_benches only; `deploy/test.sh --all` builds it.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -52,6 +58,10 @@ if(RTD_UNITY_BUILD)
   set(CMAKE_UNITY_BUILD_BATCH_SIZE 14)
   # Local types of one source look to g++ like types of a header once that source is included by another.
   target_compile_options(rtd_compile_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  # Tests share a precompiled header. ccache would not keep what includes one.
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(RTD_PRECOMPILE_TESTS ON)
+  endif()
 endif()
 
 if(RTD_SANITIZE)
@@ -108,7 +118,7 @@ function(rtd_test name)
   if(NOT RTD_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL;PARALLEL;WAITS" "LABEL;TIMEOUT" "SOURCES;LIBS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;PARALLEL;WAITS" "LABEL;NIGHTLY;TIMEOUT" "SOURCES;LIBS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} rtd_test_main)
   rtd_common_target(${name})
@@ -120,6 +130,9 @@ function(rtd_test name)
   # The checks themselves need not be fast, what they check keeps its optimisation.
   if(NOT ARG_LABEL STREQUAL "dataset")
     rtd_compile_quickly(${name})
+    if(RTD_PRECOMPILE_TESTS)
+      target_precompile_headers(${name} REUSE_FROM rtd_test_main)
+    endif()
   endif()
   add_test(NAME ${ARG_LABEL}.${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
@@ -133,13 +146,39 @@ function(rtd_test name)
   # 77: tests/support/test_main.cpp. COST: what may take long starts first, so that no core waits for it at the end.
   set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL} SKIP_RETURN_CODE 77
                        TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT})
-  # Several processes that keep time, or ports and domains of this host: not beside other tests. Of those that mostly
-  # wait, and check no time, one at a time runs beside tests that compute.
+  # What keeps time, or loads all cores: not beside other tests. Of the other tests with several processes, which mostly
+  # wait, one at a time, and one of those that are whole runs.
   if(ARG_WAITS)
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RESOURCE_LOCK processes)
   elseif(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
+  if(ARG_NIGHTLY)
+    rtd_test_part(${ARG_LABEL}.${name} nightly "${ARG_NIGHTLY}")
+  endif()
+endfunction()
+
+function(rtd_test_part test part filter)
+  get_test_property(${test} RTD_PARTS parts)
+  if(NOT parts)
+    set(parts "")
+  endif()
+  string(REGEX REPLACE "-.*" "" all_of_part "${filter}")
+  list(APPEND parts "${all_of_part}")
+  list(JOIN parts ":" others)
+  string(REGEX REPLACE "^[a-z]+\\." "" program ${test})
+  add_test(NAME ${test}.${part} COMMAND ${program})
+  foreach(property LABELS SKIP_RETURN_CODE TIMEOUT COST RESOURCE_LOCK RUN_SERIAL)
+    get_test_property(${test} ${property} value)
+    if(value)
+      set_property(TEST ${test}.${part} PROPERTY ${property} ${value})
+    endif()
+  endforeach()
+  if(part STREQUAL "nightly")
+    set_property(TEST ${test}.${part} APPEND PROPERTY LABELS nightly)
+  endif()
+  set_tests_properties(${test}.${part} PROPERTIES ENVIRONMENT_MODIFICATION "GTEST_FILTER=set:${filter}" ${ARGN})
+  set_tests_properties(${test} PROPERTIES RTD_PARTS "${parts}" ENVIRONMENT_MODIFICATION "GTEST_FILTER=set:-${others}")
 endfunction()
 
 function(rtd_bench name)
@@ -147,8 +186,12 @@ function(rtd_bench name)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBS" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  add_executable(${name} EXCLUDE_FROM_ALL ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE ${ARG_LIBS} benchmark::benchmark)
   rtd_common_target(${name})
+  if(NOT TARGET rtd_benches)
+    add_custom_target(rtd_benches)
+  endif()
+  add_dependencies(rtd_benches ${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bench")
 endfunction()

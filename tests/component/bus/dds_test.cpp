@@ -27,7 +27,7 @@ void wait_for_reader(const Writer<T>& writer) {
   }
 }
 
-class DdsBus : public testing::TestWithParam<std::string> {
+class DdsBus : public ::testing::TestWithParam<std::string> {
  protected:
   std::shared_ptr<Bus> here = connect_to(GetParam()), there = connect_to(GetParam());
 };
@@ -169,7 +169,7 @@ TEST_P(DdsBus, refuses_one_topic_with_two_types) {
   EXPECT_THROW(here->writer(same_name), BusError);
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, DdsBus, testing::ValuesIn(dds_vendors()), test_name);
+INSTANTIATE_TEST_SUITE_P(Vendors, DdsBus, ::testing::ValuesIn(dds_vendors()), test_name);
 
 }  // namespace
 }  // namespace rtd::bus

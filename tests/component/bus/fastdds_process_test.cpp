@@ -100,11 +100,11 @@ TEST(FastddsProcesses, a_strangers_rings_are_never_mapped_and_the_camera_of_the_
   Collector<msg::RgbdFrame> frames;
   std::atomic<int> strangers{0}, strange_frames{0};
   auto camera = camera_bus->writer(topics::kFrame);
-  const auto reader = bus->reader(
-      topics::kFrame,
-      [&, id = camera.id()](const std::shared_ptr<const msg::RgbdFrame>& frame, const WriterId& writer) {
-        writer == id ? frames.push(frame) : void(++strange_frames);
-      });
+  const auto reader =
+      bus->reader(topics::kFrame,
+                  [&, id = camera.id()](const std::shared_ptr<const msg::RgbdFrame>& frame, const WriterId& writer) {
+                    writer == id ? frames.push(frame) : void(++strange_frames);
+                  });
   const auto open_reader = beside->reader(
       topics::kFrame, [&, id = camera.id()](const auto&, const WriterId& writer) { strangers += writer != id; });
   while (reader.matched() == 0 || camera.matched() == 0) std::this_thread::sleep_for(1ms);
@@ -183,10 +183,10 @@ TEST(FastddsProcesses, messages_in_shared_memory_end_where_they_were_written) {
 TEST(FastddsLog, is_text_without_colours) {
   using eprosima::fastdds::dds::Log;
   const auto bus = connect_to("fastdds");
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStderr();
   EPROSIMA_LOG_ERROR(TEST, "of a \033[31mpeer");
   Log::Flush();
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "Fast DDS: TEST: of a \\x1b[31mpeer\n");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "Fast DDS: TEST: of a \\x1b[31mpeer\n");
 }
 
 TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {

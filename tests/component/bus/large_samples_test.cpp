@@ -47,7 +47,7 @@ class PeakMemory {
   }};
 };
 
-class LargeSamples : public testing::TestWithParam<std::string> {
+class LargeSamples : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     const auto matched = [this] {
@@ -109,7 +109,7 @@ TEST_P(LargeSamples, are_not_written_by_us) {
   EXPECT_EQ(statuses_.next()->message, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, LargeSamples, testing::ValuesIn(dds_vendors()), test_name);
+INSTANTIATE_TEST_SUITE_P(Vendors, LargeSamples, ::testing::ValuesIn(dds_vendors()), test_name);
 
 }  // namespace
 }  // namespace rtd::bus

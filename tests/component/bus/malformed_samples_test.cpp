@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
-class MalformedSamples : public testing::TestWithParam<std::tuple<std::string, std::string>> {
+class MalformedSamples : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
   static BusOptions options_with(const std::string& vendor) {
     BusOptions options;
@@ -110,7 +110,7 @@ TEST_P(MalformedSamples, malformed_variable_messages_are_left_out) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pairs, MalformedSamples,
-                         testing::Combine(testing::ValuesIn(dds_vendors()), testing::ValuesIn(dds_vendors())),
+                         ::testing::Combine(::testing::ValuesIn(dds_vendors()), ::testing::ValuesIn(dds_vendors())),
                          [](const auto& test) { return std::get<0>(test.param) + "_to_" + std::get<1>(test.param); });
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<std::string> all_vendors() {
   return vendors;
 }
 
-class MessageScreen : public testing::TestWithParam<std::string> {
+class MessageScreen : public ::testing::TestWithParam<std::string> {
  protected:
   MessageScreen() {
     BusOptions options;
@@ -125,7 +125,7 @@ TEST_P(MessageScreen, heartbeats_that_would_forge_a_line_never_arrive) {
       "rtd_msgs/Metric.name");
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, MessageScreen, testing::ValuesIn(all_vendors()),
+INSTANTIATE_TEST_SUITE_P(Vendors, MessageScreen, ::testing::ValuesIn(all_vendors()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -21,7 +21,7 @@ using Samples = Collector<RawSample>;
 
 constexpr std::size_t kHeader = 4;
 
-BusOptions options_with(const std::string& vendor) {
+BusOptions raw_options_with(const std::string& vendor) {
   BusOptions options;
   options.vendor = vendor;
   options.domain = test_domain();
@@ -29,7 +29,7 @@ BusOptions options_with(const std::string& vendor) {
   return options;
 }
 
-RawHandlers into(Samples& samples) {
+RawHandlers into_samples(Samples& samples) {
   RawHandlers handlers;
   handlers.on_sample = [&samples](RawSample sample) {
     samples.push(std::make_shared<const RawSample>(std::move(sample)));
@@ -58,8 +58,8 @@ class RawFrames : public ::testing::TestWithParam<std::tuple<std::string, bool>>
 TEST_P(RawFrames, all_arrive_with_every_byte) {
   const auto& [vendor, in_place] = GetParam();
   constexpr std::uint64_t kFrames = 60;
-  const auto typed = connect(options_with(vendor));
-  const auto bus = connect_raw(options_with(vendor));
+  const auto typed = connect(raw_options_with(vendor));
+  const auto bus = connect_raw(raw_options_with(vendor));
   auto go = typed->writer(topics::kTracking);
   const PeerProcess peer(vendor, "send_frames", test_domain(), kFrames);
   const TopicWriter camera = wait_for_writer(*bus, topics::kFrame.name);
@@ -68,7 +68,7 @@ TEST_P(RawFrames, all_arrive_with_every_byte) {
   Samples samples;
   RawReaderOptions options;
   options.in_place = in_place;
-  const auto reader = bus->reader(camera.topic, options, into(samples));
+  const auto reader = bus->reader(camera.topic, options, into_samples(samples));
   while (reader->matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
   go.write(msg::TrackingResult{});
 
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(Vendors, RawProcesses, ::testing::ValuesIn(dds_vendors(
 
 TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
   const PeerProcess peer(vendor, "leave_history", test_domain(), 10);
-  const auto bus = connect_raw(options_with(vendor));
+  const auto bus = connect_raw(raw_options_with(vendor));
   const TopicWriter slam = wait_for_writer(*bus, topics::kKeyframes.name);
   EXPECT_EQ(slam.qos.durability, RawQos::Durability::kTransientLocal);
   EXPECT_TRUE(slam.qos.reliable);
@@ -105,7 +105,7 @@ TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
   Samples samples;
   RawReaderOptions options;
   options.transient_local = true;
-  const auto reader = bus->reader(slam.topic, options, into(samples));
+  const auto reader = bus->reader(slam.topic, options, into_samples(samples));
   for (std::uint64_t i = 0; i < 10; ++i) {
     const auto sample = samples.next();
     msg::KeyframeEvent event{};
@@ -116,8 +116,8 @@ TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
 }
 
 TEST_P(RawProcesses, typed_readers_understand_raw_writers) {
-  const auto typed = connect(options_with(vendor));
-  const auto bus = connect_raw(options_with(vendor));
+  const auto typed = connect(raw_options_with(vendor));
+  const auto bus = connect_raw(raw_options_with(vendor));
   Collector<msg::TrackingResult> results;
   const auto reader = typed->reader(topics::kTracking, results.callback());
   const auto writer = bus->writer({topics::kTracking.name, "rtd_msgs::msg::dds_::TrackingResult_"}, {});
@@ -132,8 +132,8 @@ TEST_P(RawProcesses, typed_readers_understand_raw_writers) {
 }
 
 TEST_P(RawProcesses, frames_from_a_raw_writer_reach_typed_readers) {
-  const auto typed = connect(options_with(vendor));
-  const auto bus = connect_raw(options_with(vendor));
+  const auto typed = connect(raw_options_with(vendor));
+  const auto bus = connect_raw(raw_options_with(vendor));
   Collector<msg::RgbdFrame> frames;
   const auto reader = typed->reader(topics::kFrame, frames.callback());
   RawWriterOptions options;
@@ -155,7 +155,7 @@ TEST_P(RawProcesses, frames_from_a_raw_writer_reach_typed_readers) {
 }
 
 TEST_P(RawProcesses, one_topic_cannot_have_two_types) {
-  const auto bus = connect_raw(options_with(vendor));
+  const auto bus = connect_raw(raw_options_with(vendor));
   const auto first = bus->reader({"rt/a", "x::A_"}, {}, {});
   EXPECT_THROW((void)bus->reader({"rt/a", "x::B_"}, {}, {}), BusError);
 }

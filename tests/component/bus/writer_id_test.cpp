@@ -50,7 +50,7 @@ struct Change {
   bool matched = false;
 };
 
-class WriterIds : public testing::TestWithParam<std::pair<std::string, std::string>> {
+class WriterIds : public ::testing::TestWithParam<std::pair<std::string, std::string>> {
  protected:
   template <class T>
   Reader<T> listen(const Topic<T>& topic, StatusCallbacks callbacks = {}) {
@@ -186,14 +186,14 @@ TEST_P(WriterIds, lose_next_to_nothing_of_the_wanted_writer_while_another_writes
   EXPECT_LE(lost, 10) << "of " << kMessages << "; a history that a busy computer reads too late overflows";
 }
 
-std::vector<std::pair<std::string, std::string>> pairs() {
+std::vector<std::pair<std::string, std::string>> vendor_pairs() {
   std::vector<std::pair<std::string, std::string>> all{{"inprocess", "inprocess"}};
   for (const std::string& from : dds_vendors())
     for (const std::string& to : dds_vendors()) all.emplace_back(from, to);
   return all;
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, WriterIds, testing::ValuesIn(pairs()),
+INSTANTIATE_TEST_SUITE_P(Vendors, WriterIds, ::testing::ValuesIn(vendor_pairs()),
                          [](const auto& test) { return test.param.first + "_to_" + test.param.second; });
 
 }  // namespace

@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr int kFrames = 20, kWidth = 320, kHeight = 240;
+constexpr int kFrames = 20, kOpenNiWidth = 320, kOpenNiHeight = 240;
 constexpr std::uint64_t kPeriodUs = 33'333;
 
 class OpenNi2DeviceTest : public ::testing::Test {
@@ -29,11 +29,11 @@ class OpenNi2DeviceTest : public ::testing::Test {
 
   /// Frame i is of colour (10 + i, 20, 30) RGB and of depth 1000 + i mm, 5 ms later.
   void record(double horizontal_fov_rad = 1.0, double vertical_fov_rad = 0.8) const {
-    rtd::test::OniWriter writer(file_, {kWidth, kHeight}, 30, horizontal_fov_rad, vertical_fov_rad);
+    rtd::test::OniWriter writer(file_, {kOpenNiWidth, kOpenNiHeight}, 30, horizontal_fov_rad, vertical_fov_rad);
     for (int i = 1; i <= kFrames; ++i) {
       const std::uint64_t stamp_us = kPeriodUs * static_cast<std::uint64_t>(i);
-      writer.color(stamp_us, cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar(10 + i, 20, 30)));
-      writer.depth(stamp_us + 5000, cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(1000 + i)));
+      writer.color(stamp_us, cv::Mat(kOpenNiHeight, kOpenNiWidth, CV_8UC3, cv::Scalar(10 + i, 20, 30)));
+      writer.depth(stamp_us + 5000, cv::Mat(kOpenNiHeight, kOpenNiWidth, CV_16UC1, cv::Scalar(1000 + i)));
     }
   }
   std::unique_ptr<FrameSource> source(const std::string& parameters = {}) const {
@@ -67,9 +67,9 @@ TEST_F(OpenNi2DeviceTest, the_lens_is_that_of_the_field_of_view) {
   const auto played = source();
   ASSERT_TRUE(played->open());
   const auto& camera = played->info().camera.parameters();
-  EXPECT_NEAR(camera.fx, kWidth / (2 * std::tan(0.5)), 1e-3);
-  EXPECT_NEAR(camera.fy, kHeight / (2 * std::tan(0.4)), 1e-3);
-  EXPECT_EQ(camera.cx, (kWidth - 1) / 2.0);
+  EXPECT_NEAR(camera.fx, kOpenNiWidth / (2 * std::tan(0.5)), 1e-3);
+  EXPECT_NEAR(camera.fy, kOpenNiHeight / (2 * std::tan(0.4)), 1e-3);
+  EXPECT_EQ(camera.cx, (kOpenNiWidth - 1) / 2.0);
 }
 
 TEST_F(OpenNi2DeviceTest, without_a_field_of_view_a_calibration_is_asked_for) {

@@ -9,7 +9,7 @@ namespace {
 
 using test::RealsenseDouble;
 
-constexpr int kWidth = 64, kHeight = 48;
+constexpr int kRealsenseWidth = 64, kRealsenseHeight = 48;
 
 class RealsenseCamera : public test::CameraOnBus {
  protected:
@@ -24,11 +24,12 @@ TEST_P(RealsenseCamera, plays_a_device_and_registers_its_depth) {
   stop_.request_stop();
   EXPECT_EQ(running.get(), service::kOk);
   const auto frame = frames_.all().back();
-  EXPECT_EQ(frame->width, std::uint32_t{kWidth});
+  EXPECT_EQ(frame->width, std::uint32_t{kRealsenseWidth});
   EXPECT_EQ(frame->color_bgr[100], 77);
   EXPECT_DOUBLE_EQ(frame->intrinsics[0], 60);
   EXPECT_NEAR(frame->depth_scale_m, 0.002, 1e-9) << "the device's own unit";
-  EXPECT_EQ(frame->depth[kWidth * kHeight / 2 + kWidth / 2], 257 + 50) << "0.1 m in front of colour";
+  EXPECT_EQ(frame->depth[kRealsenseWidth * kRealsenseHeight / 2 + kRealsenseWidth / 2], 257 + 50)
+      << "0.1 m in front of colour";
   EXPECT_EQ(frame->depth[0], 0) << "the colour camera sees more than the depth camera";
 }
 
@@ -54,7 +55,7 @@ TEST_P(RealsenseCamera, takes_the_mode_that_another_program_has_chosen) {
   ASSERT_TRUE(frames_come());
   stop_.request_stop();
   EXPECT_EQ(running.get(), service::kOk);
-  EXPECT_EQ(frames_.all().back()->width, std::uint32_t{kWidth});
+  EXPECT_EQ(frames_.all().back()->width, std::uint32_t{kRealsenseWidth});
 }
 
 TEST_P(RealsenseCamera, waits_for_a_device_and_survives_that_it_goes_and_comes) {

@@ -13,7 +13,7 @@ namespace {
 
 using test::play;
 
-const std::string kSmall = "&width=160&height=120";
+const std::string kStagedSmall = "&width=160&height=120";
 
 double share(const cv::Mat& mask) {
   return cv::countNonZero(mask) / static_cast<double>(mask.total());
@@ -24,9 +24,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, StagedScene,
                          ::testing::Values("sitting", "crowd", "fill", "approach", "slow", "flicker"));
 
 TEST_P(StagedScene, repeats_itself_by_seed_only) {
-  const auto first = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kSmall + "&seed=4");
-  const auto again = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kSmall + "&seed=4");
-  const auto other = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kSmall + "&seed=5");
+  const auto first = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kStagedSmall + "&seed=4");
+  const auto again = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kStagedSmall + "&seed=4");
+  const auto other = play("synthetic:" + std::string(GetParam()) + "?frames=3&fps=1" + kStagedSmall + "&seed=5");
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_TRUE(test::same(first[i].image.color_bgr, again[i].image.color_bgr));
     EXPECT_TRUE(test::same(first[i].image.depth, again[i].image.depth));
@@ -48,7 +48,7 @@ TEST_P(StagedScene, stands_still_where_the_mask_says_so) {
 }
 
 TEST(SittingScene, keeps_its_person_at_rest_then_moving_then_at_rest) {
-  const auto frames = play("synthetic:sitting?sit=2&frames=40&fps=4&fidget=0" + kSmall);
+  const auto frames = play("synthetic:sitting?sit=2&frames=40&fps=4&fidget=0" + kStagedSmall);
   for (const SourceFrame& frame : frames) {
     const double t_s = static_cast<double>(frame.image.seq) / 4;
     const bool moves = t_s >= 2 && t_s < 2 + synthetic::Sitter::kRiseS + synthetic::Sitter::kWalkS;
@@ -64,7 +64,7 @@ TEST(SittingScene, keeps_its_person_at_rest_then_moving_then_at_rest) {
 TEST(SittingScene, shows_its_person_nearly_always) {
   for (const char* seed : {"1", "2", "3", "4", "5"}) {
     int seen = 0;
-    const auto frames = play(std::string("synthetic:sitting?frames=20&fps=1&seed=") + seed + kSmall);
+    const auto frames = play(std::string("synthetic:sitting?frames=20&fps=1&seed=") + seed + kStagedSmall);
     for (const SourceFrame& frame : frames) {
       const auto person = std::find_if(frame.objects.begin(), frame.objects.end(),
                                        [](const SourceObject& object) { return object.class_name == "person"; });
@@ -105,7 +105,7 @@ TEST(Figure, sits_with_its_feet_on_the_floor_and_its_hips_on_the_seat) {
 
 TEST(FillScene, has_a_person_who_covers_four_fifths_of_the_view_for_some_seconds) {
   for (const char* seed : {"1", "2", "3", "4", "5", "6"}) {
-    const auto frames = play(std::string("synthetic:fill?frames=40&fps=5&seed=") + seed + kSmall);
+    const auto frames = play(std::string("synthetic:fill?frames=40&fps=5&seed=") + seed + kStagedSmall);
     double covered = 0;
     for (std::size_t i = 15; i <= 27; ++i) covered += share(frames[i].dynamic_mask) / 13;
     EXPECT_GT(covered, 0.72) << "seed " << seed;
@@ -117,7 +117,7 @@ TEST(FillScene, has_a_person_who_covers_four_fifths_of_the_view_for_some_seconds
 
 TEST(ApproachScene, moves_its_box_along_the_viewing_axis) {
   int smallest = 1 << 20, largest = 0;
-  for (const SourceFrame& frame : play("synthetic:approach?frames=40&fps=4" + kSmall)) {
+  for (const SourceFrame& frame : play("synthetic:approach?frames=40&fps=4" + kStagedSmall)) {
     ASSERT_THAT(frame.objects, ::testing::SizeIs(1));
     const cv::Rect& box = frame.objects[0].box_px;
     EXPECT_NEAR(box.x + box.width / 2, 80, 30);
@@ -146,7 +146,7 @@ TEST(SlowScene, moves_its_boxes_by_centimetres_a_second) {
 }
 
 TEST(FlickerScene, changes_the_light_and_nothing_else) {
-  const std::string parameters = "?people=2&boxes=0&frames=30&fps=5&noise=0" + kSmall;
+  const std::string parameters = "?people=2&boxes=0&frames=30&fps=5&noise=0" + kStagedSmall;
   const auto lit = play("synthetic:office" + parameters), unsteady = play("synthetic:flicker" + parameters);
   const auto half = play("synthetic:office" + parameters + "&flicker=0.5");
   double darkest = 1e9, brightest = 0, darkest_half = 1e9;

@@ -20,6 +20,7 @@
 #include "tests/support/fleet/robot_double.hpp"
 #include "tests/support/sanitizers.hpp"
 #include "tests/support/test_domain.hpp"
+#include "tests/support/time_bounds.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -149,9 +150,12 @@ TEST(Fleet, serves_eight_robots_at_their_rate_and_mixes_up_none) {
   for (const auto& one : all) {
     const RobotDouble::Figures figures = one->take_figures();
     EXPECT_EQ(figures.wrong, 0u);
+    EXPECT_GT(figures.answered, 0u);
+    if (!test_support::checks_time()) continue;
     EXPECT_GE(static_cast<double>(figures.answered), 0.95 * static_cast<double>(figures.sent));
     latencies_ms.insert(latencies_ms.end(), figures.latencies_ms.begin(), figures.latencies_ms.end());
   }
+  if (!test_support::checks_time()) return;
   EXPECT_GE(latencies_ms.size(), 0.95 * 8 * 5 * 30);
   EXPECT_LE(quantile(latencies_ms, 0.99), 60);
 }
@@ -167,7 +171,7 @@ TEST(Fleet, mixes_up_no_answers_at_full_speed) {
     EXPECT_EQ(figures.wrong, 0u);
     answered += figures.answered;
   }
-  EXPECT_GE(answered, test_support::kSanitized ? 100u : 1000u);
+  EXPECT_GE(answered, test_support::checks_time() ? 1000u : 100u);
 }
 
 TEST(Fleet, reports_to_each_robot_how_it_is_served) {
@@ -178,7 +182,7 @@ TEST(Fleet, reports_to_each_robot_how_it_is_served) {
   EXPECT_EQ(status->state, msg::ServiceState::kRunning);
   EXPECT_EQ(status->message, "stands in, 1 robot");
   EXPECT_EQ(metric(status, "batch_mean"), 1);
-  EXPECT_GT(metric(status, "rate_hz"), test_support::kSanitized ? 1 : 25);
+  EXPECT_GT(metric(status, "rate_hz"), test_support::checks_time() ? 25 : 1);
   EXPECT_GT(metric(status, "latency_p50_ms"), 0.5);
   EXPECT_GE(metric(status, "latency_p99_ms"), metric(status, "latency_p50_ms"));
   box.stop();
@@ -204,8 +208,9 @@ TEST(Fleet, a_flooding_robot_costs_the_others_nothing) {
   noisy->set_rate(500);
   const std::vector<double> beside_a_flood = answers_in_4_s();
   for (std::size_t i = 0; i < before.size(); ++i) {
-    EXPECT_GE(before[i], 35) << i;
-    EXPECT_GE(beside_a_flood[i], 0.95 * before[i] - 1) << i;  // one answer more or less at the ends
+    EXPECT_GE(before[i], test_support::checks_time() ? 35 : 1) << i;
+    const double least = test_support::checks_time() ? 0.95 : 0.5;  // one answer more or less at the ends
+    EXPECT_GE(beside_a_flood[i], least * before[i] - 1) << i;
   }
   EXPECT_GT(metric(noisy->status(), "frames_dropped"), 1000);
 }
@@ -220,7 +225,7 @@ TEST(Fleet, broken_jpegs_are_counted_and_cost_the_others_nothing) {
   for (const auto& one : all) {
     const RobotDouble::Figures figures = one->take_figures();
     EXPECT_EQ(figures.wrong, 0u);
-    if (!test_support::kSanitized) {
+    if (test_support::checks_time()) {
       EXPECT_GE(static_cast<double>(figures.answered), 0.95 * static_cast<double>(figures.sent) - 1);
     }
   }
@@ -241,7 +246,7 @@ TEST(Fleet, an_image_of_enormous_size_is_not_decoded) {
     std::this_thread::sleep_for(10ms);
   }
   EXPECT_TRUE(anna->wait_answers(30));
-  EXPECT_LE(anna->figures().longest_gap_ms, test_support::kSanitized ? 2000 : 200);
+  EXPECT_LE(anna->figures().longest_gap_ms, test_support::checks_time() ? 200 : 2000);
 }
 
 TEST(Fleet, finds_robots_that_join_late_and_drops_those_that_leave) {
@@ -260,7 +265,7 @@ TEST(Fleet, finds_robots_that_join_late_and_drops_those_that_leave) {
   EXPECT_TRUE(dying->wait_answers(30, 4s));
   EXPECT_TRUE(watcher.wait_message("serves dying; serves late; serves r0"));
   EXPECT_EQ(all[0]->figures().wrong + late->figures().wrong + dying->figures().wrong, 0u);
-  if (!test_support::kSanitized) {
+  if (test_support::checks_time()) {
     EXPECT_LE(all[0]->figures().longest_gap_ms, 200);
   }
 }

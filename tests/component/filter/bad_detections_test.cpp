@@ -15,7 +15,7 @@ namespace {
 
 using test::MovingScene;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+constexpr float kFloatNan = std::numeric_limits<float>::quiet_NaN(), kFloatInf = std::numeric_limits<float>::infinity();
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 using Updates = std::function<DetectorUpdate(std::int64_t stamp_ns)>;
 
@@ -90,7 +90,7 @@ TEST(BadDetections, of_impossible_size_count_as_none) {
 
 TEST(BadDetections, with_numbers_that_are_not_finite_count_as_none) {
   std::vector<vision::Detection> boxes;
-  for (const float bad : {kNan, kInf, -kInf}) {
+  for (const float bad : {kFloatNan, kFloatInf, -kFloatInf}) {
     boxes.insert(boxes.end(), {person(bad, 10, 100, 100), person(10, bad, 100, 100), person(10, 10, bad, 100),
                                person(10, 10, 100, bad)});
   }
@@ -98,7 +98,7 @@ TEST(BadDetections, with_numbers_that_are_not_finite_count_as_none) {
 }
 
 TEST(BadDetections, with_a_score_that_is_not_finite_count_as_none) {
-  for (const float score : {kNan, kInf, -kInf}) {
+  for (const float score : {kFloatNan, kFloatInf, -kFloatInf}) {
     SCOPED_TRACE(score);
     expect_same(always({person(200, 100, 200, 250, score)}), without_boxes());
   }

@@ -16,8 +16,8 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
-#include "services/filter/core/dynamic_filter.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
+#include "services/filter/core/dynamic_filter.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -283,12 +283,12 @@ Accuracy measure(const std::string& uri) {
   return accuracy;
 }
 
-struct MovingScene {
+struct MoversScene {
   const char* uri;
   int id_switches = 0;  ///< of objects that pass through each other or are hidden by one that does
 };
 
-class WorldMoversIn : public ::testing::TestWithParam<MovingScene> {};
+class WorldMoversIn : public ::testing::TestWithParam<MoversScene> {};
 
 TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
   const Accuracy accuracy = measure(GetParam().uri);
@@ -303,12 +303,12 @@ TEST_P(WorldMoversIn, scenes_are_where_and_as_fast_as_they_are) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, WorldMoversIn,
-                         ::testing::Values(MovingScene{"synthetic:office?frames=300&seed=5", 1},
-                                           MovingScene{"synthetic:flicker?frames=200&seed=3"},
-                                           MovingScene{"synthetic:sitting?frames=420"},
-                                           MovingScene{"synthetic:box?frames=240", 1},
-                                           MovingScene{"synthetic:box?frames=300&seed=63", 1},
-                                           MovingScene{"synthetic:approach?frames=200"}));
+                         ::testing::Values(MoversScene{"synthetic:office?frames=300&seed=5", 1},
+                                           MoversScene{"synthetic:flicker?frames=200&seed=3"},
+                                           MoversScene{"synthetic:sitting?frames=420"},
+                                           MoversScene{"synthetic:box?frames=240", 1},
+                                           MoversScene{"synthetic:box?frames=300&seed=63", 1},
+                                           MoversScene{"synthetic:approach?frames=200"}));
 
 }  // namespace
 }  // namespace rtd::filter

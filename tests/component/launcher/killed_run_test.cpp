@@ -25,7 +25,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr std::uint64_t kFrames = 150;
+constexpr std::uint64_t kKilledFrames = 150;
 const std::string kDriver = "ros2:/camera/color/image_raw,/camera/aligned_depth_to_color/image_raw";
 const std::string kRoom = "synthetic:office?width=320&height=240&people=1&frames=";
 
@@ -47,9 +47,9 @@ class Stored {
  private:
   Stored() {
     std::filesystem::create_directories(folder_);
-    const auto source = camera::make_source(kRoom + std::to_string(kFrames));
+    const auto source = camera::make_source(kRoom + std::to_string(kKilledFrames));
     source->open();
-    camera::export_tum(*source, folder_ / "room", kFrames);
+    camera::export_tum(*source, folder_ / "room", kKilledFrames);
     RtdCommand convert;
     EXPECT_EQ(convert.run({"convert", "tum:" + (*this / "room"), *this / "room.mcap"}), 0) << convert.output();
     std::ofstream(*this / "tiny.onnx", std::ios::binary) << test::tiny_network_onnx({.class_count = 80});
@@ -143,9 +143,9 @@ TEST_P(EveryService, may_die_and_no_frame_is_unaccounted_for) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paces, EveryService,
-                         testing::Values(Killed{"lockstep", "folder", "lockstep", kFrames},
-                                         Killed{"asap", "recording", "asap", kFrames},
-                                         Killed{"realtime", kRoom + "0", "realtime", 2 * kFrames}),
+                         testing::Values(Killed{"lockstep", "folder", "lockstep", kKilledFrames},
+                                         Killed{"asap", "recording", "asap", kKilledFrames},
+                                         Killed{"realtime", kRoom + "0", "realtime", 2 * kKilledFrames}),
                          [](const auto& given) { return given.param.name; });
 
 using KilledCamera = KilledRun;
@@ -188,8 +188,8 @@ TEST_F(KilledCamera, that_keeps_dying_fails_the_run_which_counts_all_frames) {
   EXPECT_EQ(rtd_.wait(), 1) << rtd_.output();
   const nlohmann::json json = report();
   const int used = json["frames_used"];
-  EXPECT_EQ(json["frames_given"], kFrames);
-  EXPECT_EQ(json["frames_not_played"].get<int>() + json["frames_in"].get<int>(), kFrames);
+  EXPECT_EQ(json["frames_given"], kKilledFrames);
+  EXPECT_EQ(json["frames_not_played"].get<int>() + json["frames_in"].get<int>(), kKilledFrames);
   const std::string words = "only " + std::to_string(used) + " of 150 frames were used";
   for (const std::string& said : {rtd_.output(), json["events"].dump(), text_of(out_ + "/report.html")})
     EXPECT_THAT(said, AllOf(HasSubstr(words), HasSubstr("camera died: killed by signal 6 (SIGABRT)")));

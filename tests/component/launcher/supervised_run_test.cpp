@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/time_bounds.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -69,7 +70,9 @@ TEST_F(SupervisedRunTest, gives_every_service_its_arguments_and_a_log) {
 TEST_F(SupervisedRunTest, looks_for_no_other_run_where_no_process_is_in_the_domain) {
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(rtd_.run(arguments({"--domain", "79", "--set", "launcher.domain_check_ms=10000"})), 1);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(9));
+  if (test_support::checks_time()) {
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(9));
+  }
 }
 
 TEST_F(SupervisedRunTest, a_run_without_a_pose_fails_and_says_so) {
@@ -208,7 +211,9 @@ TEST_F(SupervisedRunTest, ctrl_c_ends_polite_and_unresponsive_services_within_tw
   const auto pressed = std::chrono::steady_clock::now();
   rtd_.interrupt();
   EXPECT_EQ(rtd_.wait(), 130);
-  EXPECT_LT(std::chrono::steady_clock::now() - pressed, std::chrono::seconds(2));
+  if (test_support::checks_time()) {
+    EXPECT_LT(std::chrono::steady_clock::now() - pressed, std::chrono::seconds(2));
+  }
   EXPECT_THAT(rtd_.output(),
               AllOf(HasSubstr("slam did not end when asked and was killed"), HasSubstr("partial results")));
   EXPECT_TRUE(fs::exists(scratch_ / "out/report.json"));

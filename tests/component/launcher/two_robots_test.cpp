@@ -7,12 +7,12 @@
 namespace rtd::launcher {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Whole runs of robots with names, on one host and in one DDS domain.
-class TwoRobots : public testing::TestWithParam<const char*> {
+class TwoRobots : public ::testing::TestWithParam<const char*> {
  protected:
   static constexpr const char *kAnnaSees = "synthetic:office?frames=20", *kBertSees = "synthetic:slow?frames=20&seed=2";
 
@@ -72,7 +72,7 @@ TEST_P(TwoRobots, a_name_that_ros_would_refuse_is_refused) {
   EXPECT_THAT(rtd.output(), HasSubstr("'anna/1' cannot be a robot's name"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, TwoRobots, testing::Values("fastdds", "cyclonedds"));
+INSTANTIATE_TEST_SUITE_P(Vendors, TwoRobots, ::testing::Values("fastdds", "cyclonedds"));
 
 }  // namespace
 }  // namespace rtd::launcher

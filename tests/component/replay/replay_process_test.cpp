@@ -20,7 +20,7 @@
 namespace rtd::replay {
 namespace {
 
-constexpr std::int64_t kMillisecond = 1'000'000, kEpoch = 1'700'000'000'000'000'000;
+constexpr std::int64_t kMillisecondNs = 1'000'000, kProcessEpoch = 1'700'000'000'000'000'000;
 
 class ReplayProcessTest : public testing::Test {
  protected:
@@ -45,11 +45,11 @@ class ReplayProcessTest : public testing::Test {
   static std::vector<Piece> camera_like(std::uint64_t frames) {
     std::vector<Piece> pieces;
     for (std::uint64_t i = 0; i < frames; ++i) {
-      const std::int64_t time_ns = kEpoch + static_cast<std::int64_t>(i) * 33'333'333;
-      pieces.push_back({"rtd/frame", time_ns, time_ns - 2 * kMillisecond, cdr_of(i, sizeof(msg::RgbdFrame))});
-      pieces.push_back({"rt/boxes", time_ns + kMillisecond, time_ns, cdr_of(i, 20 + 12 * i)});
+      const std::int64_t time_ns = kProcessEpoch + static_cast<std::int64_t>(i) * 33'333'333;
+      pieces.push_back({"rtd/frame", time_ns, time_ns - 2 * kMillisecondNs, cdr_of(i, sizeof(msg::RgbdFrame))});
+      pieces.push_back({"rt/boxes", time_ns + kMillisecondNs, time_ns, cdr_of(i, 20 + 12 * i)});
       for (std::int64_t k = 0; k < 3; ++k)
-        pieces.push_back({"rt/pose", time_ns + (2 + 10 * k) * kMillisecond, time_ns + k, cdr_of(3 * i + k, 100)});
+        pieces.push_back({"rt/pose", time_ns + (2 + 10 * k) * kMillisecondNs, time_ns + k, cdr_of(3 * i + k, 100)});
     }
     return pieces;
   }

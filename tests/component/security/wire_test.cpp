@@ -17,7 +17,7 @@ namespace {
 
 using test_support::LoopbackCapture;
 
-constexpr int kSamples = 50;
+constexpr int kWireSamples = 50;
 const std::string kTopic = "rt/secret", kType = "std_msgs::msg::dds_::String_";
 
 /// Datagrams that hold what.
@@ -74,7 +74,7 @@ class WireTest : public ::testing::TestWithParam<std::string> {
     peers_.start("reader", keystore, "/rtd/reader", {kTopic}, {"SECURE_PEER_UDP=1"});
     EXPECT_TRUE(peers_.wait_until([&] {
       eavesdropper_.listen();
-      return peers_.got("reader", writer_) >= kSamples;
+      return peers_.got("reader", writer_) >= kWireSamples;
     })) << peers_.log();
     EXPECT_EQ(eavesdropper_.missed(), 0U);
     const Captured captured = eavesdropper_.captured();
@@ -93,14 +93,14 @@ class WireTest : public ::testing::TestWithParam<std::string> {
 
 TEST_P(WireTest, without_security_everything_can_be_read) {
   const Captured captured = exchange("-");
-  EXPECT_GE(captured.payload, kSamples);
+  EXPECT_GE(captured.payload, kWireSamples);
   EXPECT_GT(captured.topic, 0);
   EXPECT_GT(captured.type, 0);
 }
 
 TEST_P(WireTest, secured_neither_payload_nor_topic_nor_type_is_on_the_wire) {
   const Captured captured = exchange(Keystores(peers_.scratch()).good());
-  EXPECT_GE(captured.of_writer, kSamples) << "the samples did not go this way";
+  EXPECT_GE(captured.of_writer, kWireSamples) << "the samples did not go this way";
   EXPECT_EQ(captured.payload, 0);
   EXPECT_EQ(captured.topic, 0);
   EXPECT_EQ(captured.type, 0);

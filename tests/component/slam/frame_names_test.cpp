@@ -26,9 +26,8 @@ namespace {
 using test_support::Inbox;
 using test_support::link;
 using test_support::Links;
-using test_support::TwoPlaces;
 
-constexpr double kStep_m = 0.05;
+constexpr double kFrameStep_m = 0.05;
 constexpr std::int64_t kLongestGapNs = 500'000'000;  // while the camera finds its place again
 
 Eigen::Isometry3d isometry_of(const msg::RosTransform& transform) {
@@ -76,8 +75,8 @@ class FramesOfMaps : public test_support::ServiceFixture<SlamService> {
   /// Until it is there or the number of maps changes.
   void walk_to(double end_m) {
     const std::uint32_t maps = results_.all().back()->maps;
-    const double step_m = end_m > x_m_ ? kStep_m : -kStep_m;
-    while (std::abs(end_m - x_m_) > kStep_m / 2 && look_from(x_m_ + step_m).maps == maps) {
+    const double step_m = end_m > x_m_ ? kFrameStep_m : -kFrameStep_m;
+    while (std::abs(end_m - x_m_) > kFrameStep_m / 2 && look_from(x_m_ + step_m).maps == maps) {
     }
   }
   void call(const char* command, const std::string& argument = {}) {
@@ -125,12 +124,12 @@ class FramesOfMaps : public test_support::ServiceFixture<SlamService> {
       const Eigen::Vector3d position = position_of(odometry->pose.pose);
       EXPECT_LT((links.at(stamp_ns).second.translation() - position).norm(), 1e-9);
       const bool next_frame = before && stamp_ns - before->first < kLongestGapNs;
-      EXPECT_LT(next_frame ? (position - before->second).norm() : 0, 2 * kStep_m) << "at " << stamp_ns;
+      EXPECT_LT(next_frame ? (position - before->second).norm() : 0, 2 * kFrameStep_m) << "at " << stamp_ns;
       before.emplace(stamp_ns, position);
     }
   }
 
-  TwoPlaces places_;
+  test_support::TwoPlaces places_;
   Inbox<msg::TrackingResult> results_;
   Inbox<msg::TFMessage> tf_;
   Inbox<msg::Odometry> odometry_;
@@ -155,7 +154,7 @@ TEST_F(FramesOfMaps, never_change_over_loss_merge_reset_and_load) {
   const std::uint32_t desk_landmarks = results_.all().back()->landmarks;
   for (int i = 0; i < 60; ++i) show(*test_support::make_empty_view(next_));
 
-  const double hall_m = TwoPlaces::kHallX_m + 2;
+  const double hall_m = test_support::TwoPlaces::kHallX_m + 2;
   msg::TrackingResult result{};
   for (int i = 0; i < 120 && result.state != msg::TrackingState::kOk; ++i) result = look_from(hall_m);
   ASSERT_EQ(result.map_id, 1U) << "lost: another map";

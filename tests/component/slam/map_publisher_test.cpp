@@ -166,11 +166,11 @@ std::size_t bytes_of(const std::vector<msg::MapUpdate>& updates) {
 
 /// A lap of a camera whose calibration is 2 % off: each turn is over-estimated until the loop is closed.
 Eigen::Isometry3d pose_on_circle(int i) {
-  constexpr double kRadiusM = 6;
-  const double angle_rad = i * 0.2 / kRadiusM;
+  constexpr double kLapRadiusM = 6;
+  const double angle_rad = i * 0.2 / kLapRadiusM;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
-  T.translation() = kRadiusM * Eigen::Vector3d(1 - std::cos(angle_rad), 0, std::sin(angle_rad));
+  T.translation() = kLapRadiusM * Eigen::Vector3d(1 - std::cos(angle_rad), 0, std::sin(angle_rad));
   return T;
 }
 

@@ -11,7 +11,7 @@
 namespace rtd::test_support {
 namespace {
 
-OfflineReport run(const std::string& source, const std::string& mode) {
+OfflineReport run_clip(const std::string& source, const std::string& mode) {
   OfflineOptions options;
   options.source = source;
   options.front_end.mode = mode;
@@ -35,7 +35,7 @@ class TrueMaskClip : public ::testing::TestWithParam<MaskedClip> {};
 TEST_P(TrueMaskClip, is_tracked_as_well_as_by_orb_slam2) {
   const std::string source = clip_uri(GetParam().name, "?masks=1");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
-  const OfflineReport report = run(source, "true-mask");
+  const OfflineReport report = run_clip(source, "true-mask");
   EXPECT_LE(report.ate_rmse_m, kSlack * GetParam().median_ate_m);
   EXPECT_GE(report.coverage, 0.99);
 }
@@ -52,7 +52,7 @@ TEST_P(FaultySensorClip, is_tracked_with_the_real_detector) {
   const std::string source = clip_uri(GetParam().name, "?masks=1");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no " << GetParam().name;
   if (std::getenv("RTD_MODEL_DIR") == nullptr) GTEST_SKIP() << "RTD_MODEL_DIR is not set";
-  const OfflineReport report = run(source, "rtd");
+  const OfflineReport report = run_clip(source, "rtd");
   EXPECT_LE(report.ate_rmse_m, kSlack * GetParam().median_ate_m);
   EXPECT_GE(report.coverage, 1.0);
 }
@@ -97,7 +97,7 @@ TEST(StaticClip, fr1_xyz_is_tracked_at_5_Hz) {
 TEST(StaticClip, fr1_xyz_is_tracked_as_well_as_by_orb_slam2) {
   const std::string source = clip_uri("fr1_xyz");
   if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no fr1_xyz";
-  const OfflineReport report = run(source, "off");
+  const OfflineReport report = run_clip(source, "off");
   EXPECT_LE(report.ate_rmse_m, 0.0094);  // ORB-SLAM2: 0.0098
   EXPECT_GE(report.coverage, 0.99);
   EXPECT_LE(report.rpe_rot_rmse_deg, 1.5);

@@ -108,13 +108,13 @@ std::string read_calibration(const std::string& text, Counted& counted) {
 }
 
 std::string try_input(const io::Bytes& input, Counted& counted) {
-  const std::string text = testing::text_of(input);
+  const std::string text = rtd::testing::text_of(input);
   const std::clock_t begin = std::clock();
   std::string failure = read_configuration(text, counted);
   if (failure.empty()) failure = read_calibration(text, counted);
   if (!failure.empty()) return failure;
   if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kMost_s) return "it takes too long";
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -126,9 +126,9 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<std::string> texts = seeds(), all_words = words();
   Counted counted;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_config_failed.yaml",
-      [&](std::mt19937_64& random) { return testing::mutate_text(texts, all_words, random); },
+      [&](std::mt19937_64& random) { return rtd::testing::mutate_text(texts, all_words, random); },
       [&](const io::Bytes& input, std::mt19937_64&) { return try_input(input, counted); },
       [&] {
         return std::to_string(counted.configurations) + " configurations, " + std::to_string(counted.calibrations) +

@@ -29,7 +29,8 @@ std::vector<io::Bytes> seeds() {
   for (int i = 0; i < 16 * 16 * 16; ++i) room.cells.set({i % 16, i / 16 % 16, i / 256}, Space::kFree);
   for (int i = 0; i < 16 * 16; ++i) room.cells.set({16, i % 16, i / 16}, Space::kOccupied);
   for (int i = 0; i < 40; ++i) scattered.cells.set({i * 37 - 700, i * i - 300, i % 5}, Space::kOccupied);
-  return {testing::bytes_of(write(room)), testing::bytes_of(write(scattered)), testing::bytes_of(write({}))};
+  return {rtd::testing::bytes_of(write(room)), rtd::testing::bytes_of(write(scattered)),
+          rtd::testing::bytes_of(write({}))};
 }
 
 std::string header(const std::string& size, const std::string& cell_m) {
@@ -43,7 +44,7 @@ io::Bytes random_nodes(std::mt19937_64& random) {
   std::string file = header(sizes[random() % 6], cells[random() % 4 == 0 ? random() % 7 : 0]);
   for (std::uint64_t bytes = random() % 200; bytes > 0; --bytes)
     file += static_cast<char>(random() % 3 == 0 ? 0xFF : random() % 2 == 0 ? 0 : random());
-  return testing::bytes_of(file);
+  return rtd::testing::bytes_of(file);
 }
 
 std::size_t count(const Volume& volume) {
@@ -64,7 +65,7 @@ std::string compare_written(const Volume& volume) {
 std::string try_input(const io::Bytes& input, std::uint64_t& maps) {
   const std::clock_t begin = std::clock();
   try {
-    std::istringstream in(testing::text_of(input));
+    std::istringstream in(rtd::testing::text_of(input));
     const Volume volume = read_octomap(in);
     ++maps;
     if (volume.cells.blocks() < kFewCells / 64 && count(volume) < kFewCells)
@@ -72,7 +73,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& maps) {
   } catch (const OctomapError&) {
   }
   if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kMost_s) return "it takes too long";
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -84,7 +85,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = occupancy::seeds();
   std::uint64_t maps = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_octomap_failed.bt",
       [&](std::mt19937_64& random) {
         if (random() % 4 == 0) return occupancy::random_nodes(random);

@@ -25,7 +25,7 @@ std::vector<io::Bytes> seeds() {
   pointwise.pointwise_heads = true;
   std::vector<io::Bytes> files;
   for (const test::TinyNetwork& network : {small, free, named, pointwise})
-    files.push_back(testing::bytes_of(test::tiny_network_onnx(network)));
+    files.push_back(rtd::testing::bytes_of(test::tiny_network_onnx(network)));
   return files;
 }
 
@@ -44,7 +44,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& models) {
   const OnnxFile file = read_onnx_file(bytes, input.size());
   models += file.has_graph ? 1 : 0;
   if (std::string why = unsound(file); !why.empty()) return why;
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * input.size())
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * input.size())
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = detector::seeds();
   std::uint64_t models = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_onnx_failed.onnx",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);

@@ -123,7 +123,7 @@ std::string check_poses(const std::filesystem::path& file, Counted& counted) {
 }
 
 std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) {
-  folder.fill(testing::text_of(input));
+  folder.fill(rtd::testing::text_of(input));
   std::string failure;
   try {
     failure = check_pairs(folder.path(), counted);
@@ -134,7 +134,7 @@ std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) 
   } catch (const geometry::TrajectoryError&) {
   }
   if (!failure.empty()) return failure;
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -147,9 +147,9 @@ int main(int argc, char** argv) {
   const std::vector<std::string> texts = camera::seeds(), all_words = camera::words();
   camera::Folder folder;
   camera::Counted counted;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_tum_failed.txt",
-      [&](std::mt19937_64& random) { return testing::mutate_text(texts, all_words, random); },
+      [&](std::mt19937_64& random) { return rtd::testing::mutate_text(texts, all_words, random); },
       [&](const io::Bytes& input, std::mt19937_64&) { return camera::try_input(input, folder, counted); },
       [&] { return std::to_string(counted.pairs) + " pairs, " + std::to_string(counted.poses) + " poses"; });
 }

@@ -104,7 +104,7 @@ std::string try_input(const Bytes& file, std::uint64_t& maps) {
     ++maps;
   } catch (const MapFileError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * file.size())
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * file.size())
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = slam::seeds();
   std::uint64_t maps = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_map_failed.rtdmap", [&](std::mt19937_64& random) { return slam::make_input(files, random); },
       [&](const io::Bytes& input, std::mt19937_64& /*random*/) { return slam::try_input(input, maps); },
       [&] { return std::to_string(maps) + " of them maps"; });

@@ -66,7 +66,7 @@ std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
   const ReadBack again = stream(sink.bytes());
   for (const StoredMessage& message : again.messages) sum += touch(io::bytes_of(message.data));
   if (!again.problems.empty()) return "the recovered file has problems: " + texts(again.problems);
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the readers hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = mcap::seeds();
   std::uint64_t sum = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_mcap_failed.mcap",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);

@@ -100,12 +100,12 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<bus::Type> types = bus::all_types();
   std::uint64_t passed = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_bus_messages_failed.bin", [&](std::mt19937_64& random) { return bus::make(types, random); },
       [&](const io::Bytes& input, std::mt19937_64&) -> std::string {
         const auto* const bytes = reinterpret_cast<const std::uint8_t*>(input.data());
         passed += types[bytes[0]].passes({bytes + 1, input.size() - 1});
-        return testing::peak_allocation() > bus::kMaxAllocated ? "too much memory" : "";
+        return rtd::testing::peak_allocation() > bus::kMaxAllocated ? "too much memory" : "";
       },
       [&] { return std::to_string(passed) + " passed, " + std::to_string(bus::touched) + " touched"; });
 }

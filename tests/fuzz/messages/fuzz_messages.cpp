@@ -68,7 +68,7 @@ std::string try_input(const io::Bytes& input, Counted& counted) {
     read_message(types, {bytes + begin, input.size() - begin}, counted);
   } catch (const ros::DefinitionError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> inputs = seeds();
   Counted counted;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_messages_failed.txt",
       [&](std::mt19937_64& random) {
         const io::Bytes &input = inputs[random() % inputs.size()], &other = inputs[random() % inputs.size()];

@@ -43,7 +43,7 @@ std::string try_input(const io::Bytes& input, std::uint64_t& passed) {
       return "it has no such records";
   } catch (const OniFileError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the check hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
     files.emplace_back(bytes.begin(), bytes.end());
   }
   std::uint64_t passed = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_oni_failed.oni",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);

@@ -18,7 +18,7 @@
 namespace rtd::dense {
 namespace {
 
-using testing::SmallFrames;
+using rtd::testing::SmallFrames;
 
 /// A map that is full within the bound of memory.
 DenseConfig small_config() {
@@ -110,7 +110,7 @@ msg::Image mask_of(std::uint64_t seq) {
 
 class Attack {
  public:
-  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
+  explicit Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
 
   int run() {
     for (; watch_.messages() < 800 && watch_.more();) step(false);
@@ -153,8 +153,8 @@ class Attack {
     if (watch_.passes(*frame)) watch_.call("frame", [&] { target_->put(frame); });
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   std::unique_ptr<Target> target_ = std::make_unique<Target>();
   std::uint64_t seq_ = 0;
 };

@@ -20,7 +20,7 @@
 namespace rtd::detector {
 namespace {
 
-using testing::SmallFrames;
+using rtd::testing::SmallFrames;
 
 constexpr InputSize kInput{160, 128};
 constexpr int kClasses = 8, kBins = 7;  // 3 (5 + classes) planes are more than classes + 4 bins
@@ -33,7 +33,7 @@ struct Answer {
 
 class Attack {
  public:
-  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
+  explicit Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
 
   int run() {
     while (watch_.more()) {
@@ -99,8 +99,8 @@ class Attack {
     return numbers;
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   cv::Mat blob_;
   std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
   std::uint64_t seq_ = 0, broken_ = 0;

@@ -22,7 +22,7 @@
 namespace rtd::filter {
 namespace {
 
-using testing::SmallFrames;
+using rtd::testing::SmallFrames;
 
 FilterConfig small_config() {
   FilterConfig config;
@@ -145,7 +145,7 @@ msg::KeyframeEvent event_of(std::uint64_t seq) {
 
 class Attack {
  public:
-  Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
+  Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {}
 
   int run() {
     for (; watch_.messages() < 400 && watch_.more();) step(false);
@@ -199,8 +199,8 @@ class Attack {
     if (attacker_.one_in(4)) (attacker_.one_in(2) ? frame_->width : frame_->height) = msg::kMaxFrameSide;
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   std::unique_ptr<Target> target_ = std::make_unique<Target>();
   std::unique_ptr<msg::RgbdFrame> frame_ = std::make_unique<msg::RgbdFrame>();
   std::uint64_t seq_ = 0, broken_ = 0;

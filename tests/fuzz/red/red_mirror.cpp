@@ -105,7 +105,7 @@ msg::OccupancyGrid make(std::uint64_t seq) {
 
 class Attack {
  public:
-  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {
+  explicit Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()) {
     features_->width = 640;
     features_->height = 480;
     features_->intrinsics = {500, 500, 320, 240};
@@ -185,8 +185,8 @@ class Attack {
     if (watch_.passes(*attacked_)) watch_.call("features", [&] { mirror_->add(*attacked_); });
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   std::unique_ptr<PageHub> hub_;
   RobotMirror* mirror_ = nullptr;
   std::unique_ptr<Session> page_;

@@ -53,7 +53,7 @@ msg::Odometry wheels_of(std::int64_t stamp_ns) {
 
 class Attack {
  public:
-  explicit Attack(testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()), world_(small_world()) {
+  explicit Attack(rtd::testing::RedWatch& watch) : watch_(watch), attacker_(watch.seed()), world_(small_world()) {
     for (std::uint64_t seq = 0; seq < kViews; ++seq) views_.push_back(world_.view(seq));
   }
 
@@ -129,8 +129,8 @@ class Attack {
                    static_cast<unsigned long long>(watch_.messages()), msg::to_string(output.result.state));
   }
 
-  testing::RedWatch& watch_;
-  testing::Attacker attacker_;
+  rtd::testing::RedWatch& watch_;
+  rtd::testing::Attacker attacker_;
   FeatureWorld world_;
   std::vector<std::unique_ptr<msg::FeatureFrame>> views_;
   std::unique_ptr<SlamSystem> slam_;

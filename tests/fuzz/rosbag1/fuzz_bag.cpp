@@ -82,7 +82,7 @@ std::string try_input(const fs::path& path, const io::Bytes& input, Counted& cou
     read_all(path, counted);
   } catch (const BagError&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -96,7 +96,7 @@ int main(int argc, char** argv) {
       std::filesystem::temp_directory_path() / ("rtd_fuzz_" + std::to_string(getpid()) + ".bag");
   const std::vector<io::Bytes> files = rosbag1::seeds();
   rosbag1::Counted counted;
-  const int result = testing::run_fuzz(
+  const int result = rtd::testing::run_fuzz(
       argc, argv, "fuzz_bag_failed.bag",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);

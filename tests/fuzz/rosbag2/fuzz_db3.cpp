@@ -70,7 +70,7 @@ std::string try_input(const fs::path& path, const io::Bytes& input, std::uint64_
     }
   } catch (const Db3Error&) {
   }
-  if (const std::size_t peak = testing::peak_allocation(); peak > kMaxAllocated)
+  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
     return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
       std::filesystem::temp_directory_path() / ("rtd_fuzz_" + std::to_string(getpid()) + ".db3");
   const std::vector<io::Bytes> files = rosbag2::seeds(path);
   std::uint64_t read = 0;
-  const int result = testing::run_fuzz(
+  const int result = rtd::testing::run_fuzz(
       argc, argv, "fuzz_db3_failed.db3",
       [&](std::mt19937_64& random) {
         return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);

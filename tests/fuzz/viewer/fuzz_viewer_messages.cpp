@@ -122,7 +122,7 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> seeds = viewer::seeds();
   viewer::Clients clients;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_viewer_messages_failed.bin",
       [&](std::mt19937_64& random) {
         const io::Bytes& seed = seeds[random() % seeds.size()];
@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
       },
       [&](const io::Bytes& input, std::mt19937_64&) -> std::string {
         clients.send(input);
-        return testing::peak_allocation() > viewer::kMaxAllocated ? "too much memory" : "";
+        return rtd::testing::peak_allocation() > viewer::kMaxAllocated ? "too much memory" : "";
       },
       [&] {
         return std::to_string(clients.sent()) + " messages sent, " + std::to_string(clients.acted()) + " acted on";

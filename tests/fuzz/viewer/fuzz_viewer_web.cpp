@@ -144,9 +144,10 @@ class Target {
   FoxgloveHub foxglove_{"fuzz", "1", {}, {}};
   PageHub page_{{}, {}, {.on_call = {}, .now_ms = [] { return 0.0; }}};
   Site site_{"/usr/share/javascript/three"};
-  WebServer server_{{.port = 0, .access = {.hosts = {"localhost"}}}, site_, [this](const std::string& subprotocol, Rights) {
-                      return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
-                    }};
+  WebServer server_{
+      {.port = 0, .access = {.hosts = {"localhost"}}}, site_, [this](const std::string& subprotocol, Rights) {
+        return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
+      }};
   std::unique_ptr<Connection> client_;
   std::uint64_t frames_ = 0, connected_ = 0, answers_ = 0;
 };
@@ -160,7 +161,7 @@ int main(int argc, char** argv) {
   viewer::Target target;
   bool is_request = false;
   std::uint64_t count = 0;
-  return testing::run_fuzz(
+  return rtd::testing::run_fuzz(
       argc, argv, "fuzz_viewer_web_failed.bin",
       [&](std::mt19937_64& random) {
         is_request = random() % 4 == 0;
@@ -174,7 +175,7 @@ int main(int argc, char** argv) {
         } else {
           target.send_frame(input);
         }
-        if (testing::peak_allocation() > viewer::kMaxAllocated) return "too much memory";
+        if (rtd::testing::peak_allocation() > viewer::kMaxAllocated) return "too much memory";
         return ++count % 1000 == 0 && !target.still_answers() ? "the server answers no more" : "";
       },
       [&] {

@@ -19,7 +19,7 @@
 #include "tests/interop/network/two_hosts.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
-namespace rtd {
+namespace rtd::gpu_box {
 namespace {
 
 using launcher::RtdCommand;
@@ -173,4 +173,4 @@ TEST_F(GpuBoxTest, robots_keep_their_poses_while_the_box_is_away_and_get_boxes_a
 }
 
 }  // namespace
-}  // namespace rtd
+}  // namespace rtd::gpu_box

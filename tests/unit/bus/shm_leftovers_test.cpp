@@ -39,7 +39,7 @@ class Child {
     }
     close(ready[1]);
     char byte = 0;
-    if (read(ready[0], &byte, 1) != 1) std::abort();
+    if (::read(ready[0], &byte, 1) != 1) std::abort();
     close(ready[0]);
   }
   ~Child() { kill_now(); }

@@ -23,7 +23,7 @@ class OniFile : public ::testing::Test {
   OniFile() {
     const auto path = std::filesystem::temp_directory_path() / ("rtd_oni_" + std::to_string(getpid()) + ".oni");
     {
-      test::OniWriter writer(path.string(), {8, 6}, 30);
+      rtd::test::OniWriter writer(path.string(), {8, 6}, 30);
       writer.color(0, cv::Mat::zeros(6, 8, CV_8UC3));
       writer.depth(0, cv::Mat::zeros(6, 8, CV_16UC1));
     }

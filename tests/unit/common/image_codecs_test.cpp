@@ -17,6 +17,7 @@
 #include "common/msg/largest_sample.hpp"
 #include "common/msg/ros.hpp"
 #include "common/vision/plain_png.hpp"
+#include "tests/support/time_bounds.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -217,7 +218,9 @@ TEST(ImageCodecs, refuse_sizes_that_the_bytes_cannot_hold_before_memory_is_taken
   const auto began = std::chrono::steady_clock::now();
   for (int i = 0; i < 100; ++i)
     EXPECT_THAT(decode_image(bomb).problem, HasSubstr("has 32760 x 32700 px, the most that is read is"));
-  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(100)) << "1 ms each";
+  if (test_support::checks_time()) {
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::milliseconds(100)) << "1 ms each";
+  }
   EXPECT_THAT(decode_image(with_jpeg_size(small, 1920, 1200)).problem,
               HasSubstr("claims 1920 x 1200 px, which its " + std::to_string(small.size()) + " bytes cannot hold"));
   EXPECT_THAT(decode_image(with_png_size(encoded(".png", scene(CV_8UC1, {8, 8})), 8000, 8000)).problem,

@@ -76,7 +76,7 @@ TEST(Statistics, of_known_values) {
 }
 
 TEST(Statistics, of_nothing_is_not_a_number) {
-  const Statistics s = summarize({});
+  const Statistics s = summarize(std::vector<double>{});
   EXPECT_EQ(s.count, 0U);
   EXPECT_TRUE(std::isnan(s.rmse) && std::isnan(s.median) && std::isnan(s.max));
 }

@@ -129,7 +129,7 @@ TEST_F(PosixProcessHostTest, knows_who_waits_for_a_processor) {
     host.wait(milliseconds(20));
   if (host.waited_for_processor(one) == milliseconds(0)) GTEST_SKIP() << "this kernel keeps no schedstat";
   EXPECT_LT(now(), give_up);
-  EXPECT_LT(host.waited_for_processor(idle), milliseconds(150));
+  EXPECT_LT(host.waited_for_processor(idle), host.waited_for_processor(one) + host.waited_for_processor(other));
   EXPECT_EQ(host.waited_for_processor(999'999'999), milliseconds(0));
 }
 

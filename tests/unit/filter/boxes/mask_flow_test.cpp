@@ -9,7 +9,7 @@
 namespace rtd::filter {
 namespace {
 
-const Box kBox{{320, 240}, {200, 160}};
+const Box kMaskBox{{320, 240}, {200, 160}};
 
 /// A texture scaled about the image's centre and shifted.
 cv::Mat picture(double shift_x_px, double scale = 1) {
@@ -33,7 +33,7 @@ TEST(MaskFlow, finds_the_shift_of_a_box) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, picture(13));
-  const auto motion = flow.follow(1, 2, kBox, points_in_box());
+  const auto motion = flow.follow(1, 2, kMaskBox, points_in_box());
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->flow.shift_px.x(), 13, 0.5) << "px";
   EXPECT_NEAR(motion->flow.shift_px.y(), 0, 0.5) << "px";
@@ -44,7 +44,7 @@ TEST(MaskFlow, finds_the_scale_of_an_approaching_box) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, picture(0, 1.06));
-  const auto motion = flow.follow(1, 2, kBox, points_in_box());
+  const auto motion = flow.follow(1, 2, kMaskBox, points_in_box());
   ASSERT_TRUE(motion);
   EXPECT_NEAR(motion->flow.scale, 1.06, 0.015);
   EXPECT_NEAR(motion->flow.shift_px.norm(), 0, 1.0) << "px";
@@ -54,7 +54,7 @@ TEST(MaskFlow, returns_nothing_where_no_point_is_found_again) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(128)));
-  EXPECT_FALSE(flow.follow(1, 2, kBox, points_in_box()));
+  EXPECT_FALSE(flow.follow(1, 2, kMaskBox, points_in_box()));
 }
 
 TEST(MaskFlow, takes_images_that_are_one_pixel_wide_or_high) {
@@ -62,7 +62,7 @@ TEST(MaskFlow, takes_images_that_are_one_pixel_wide_or_high) {
     MaskFlow flow;
     flow.see(1, cv::Mat(size, CV_8UC3, cv::Scalar::all(90)));
     flow.see(2, cv::Mat(size, CV_8UC3, cv::Scalar::all(100)));
-    EXPECT_NO_THROW(flow.follow(1, 2, kBox, points_in_box())) << size;
+    EXPECT_NO_THROW(flow.follow(1, 2, kMaskBox, points_in_box())) << size;
   }
 }
 
@@ -70,20 +70,20 @@ TEST(MaskFlow, returns_nothing_for_unknown_images_and_too_few_points) {
   MaskFlow flow;
   flow.see(1, picture(0));
   flow.see(2, picture(1));
-  EXPECT_FALSE(flow.follow(0, 2, kBox, points_in_box()));
-  EXPECT_FALSE(flow.follow(1, 3, kBox, points_in_box()));
-  EXPECT_FALSE(flow.follow(1, 2, kBox, {{300, 200}, {310, 210}}));
-  EXPECT_FALSE(flow.follow(1, 2, kBox, {}));
+  EXPECT_FALSE(flow.follow(0, 2, kMaskBox, points_in_box()));
+  EXPECT_FALSE(flow.follow(1, 3, kMaskBox, points_in_box()));
+  EXPECT_FALSE(flow.follow(1, 2, kMaskBox, {{300, 200}, {310, 210}}));
+  EXPECT_FALSE(flow.follow(1, 2, kMaskBox, {}));
 }
 
 TEST(MaskFlow, remembers_a_bounded_number_of_images) {
   MaskFlow flow;
   const cv::Mat image = picture(0);
   for (std::int64_t i = 0; i < 40; ++i) flow.see(i, image);
-  EXPECT_FALSE(flow.follow(2, 3, kBox, points_in_box()));
-  EXPECT_TRUE(flow.follow(38, 39, kBox, points_in_box()));
+  EXPECT_FALSE(flow.follow(2, 3, kMaskBox, points_in_box()));
+  EXPECT_TRUE(flow.follow(38, 39, kMaskBox, points_in_box()));
   flow.see(5, image);
-  EXPECT_FALSE(flow.follow(38, 39, kBox, points_in_box())) << "time went back";
+  EXPECT_FALSE(flow.follow(38, 39, kMaskBox, points_in_box())) << "time went back";
 }
 
 TEST(MotionOfPoints, is_not_misled_by_a_third_of_wrong_points) {
@@ -92,7 +92,7 @@ TEST(MotionOfPoints, is_not_misled_by_a_third_of_wrong_points) {
   for (std::size_t i = 0; i < from.size(); ++i) {
     to.push_back(from[i] + (i % 3 == 0 ? cv::Point2f(0, 0) : cv::Point2f(8, -3)));
   }
-  const auto flow = motion_of_points(kBox, from, to);
+  const auto flow = motion_of_points(kMaskBox, from, to);
   ASSERT_TRUE(flow);
   EXPECT_NEAR(flow->shift_px.x(), 8, 0.6) << "px";
   EXPECT_NEAR(flow->shift_px.y(), -3, 0.6) << "px";

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 /// Why the bytes are no map; empty when they are one.
-std::string refusal(io::ByteView bytes) {
+std::string format_refusal(io::ByteView bytes) {
   try {
     read_bytes(bytes);
     return {};
@@ -119,11 +119,11 @@ TEST(MapFile, is_not_written_with_a_pose_that_cannot_be_read) {
 
 TEST(MapFile, cut_at_any_byte_is_refused) {
   const io::Bytes file = tiny_file();
-  ASSERT_EQ(refusal(file), "");
+  ASSERT_EQ(format_refusal(file), "");
   for (std::size_t size = 0; size < file.size(); ++size)
-    ASSERT_NE(refusal(io::ByteView(file).first(size)), "") << "cut at byte " << size << " of " << file.size();
-  EXPECT_THAT(refusal(io::ByteView(file).first(file.size() - 1)), HasSubstr("it was cut"));
-  EXPECT_THAT(refusal({}), HasSubstr("the file is empty"));
+    ASSERT_NE(format_refusal(io::ByteView(file).first(size)), "") << "cut at byte " << size << " of " << file.size();
+  EXPECT_THAT(format_refusal(io::ByteView(file).first(file.size() - 1)), HasSubstr("it was cut"));
+  EXPECT_THAT(format_refusal({}), HasSubstr("the file is empty"));
 }
 
 TEST(MapFile, with_any_bit_flipped_is_refused) {
@@ -131,7 +131,7 @@ TEST(MapFile, with_any_bit_flipped_is_refused) {
   for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
     const std::byte mask = std::byte{1} << (bit % 8);
     file[bit / 8] ^= mask;
-    ASSERT_NE(refusal(file), "") << "bit " << bit % 8 << " of byte " << bit / 8;
+    ASSERT_NE(format_refusal(file), "") << "bit " << bit % 8 << " of byte " << bit / 8;
     file[bit / 8] ^= mask;
   }
 }
@@ -144,7 +144,7 @@ TEST(MapFile, with_many_bits_flipped_is_refused) {
     for (std::uint64_t flips = 1 + random() % 20; flips > 0; --flips)
       file[random() % file.size()] ^= std::byte{1} << (random() % 8);
     if (file != whole) {
-      ASSERT_NE(refusal(file), "") << "round " << i;
+      ASSERT_NE(format_refusal(file), "") << "round " << i;
     }
   }
 }
@@ -152,7 +152,7 @@ TEST(MapFile, with_many_bits_flipped_is_refused) {
 TEST(MapFile, with_something_behind_its_end_is_refused) {
   io::Bytes file = tiny_file();
   file.push_back(std::byte{0});
-  EXPECT_THAT(refusal(file), HasSubstr("follows the end"));
+  EXPECT_THAT(format_refusal(file), HasSubstr("follows the end"));
 }
 
 io::Bytes file_of_version(std::uint32_t version) {
@@ -163,15 +163,15 @@ io::Bytes file_of_version(std::uint32_t version) {
 }
 
 TEST(MapFile, of_another_version_is_refused_naming_both) {
-  EXPECT_THAT(refusal(file_of_version(3)),
+  EXPECT_THAT(format_refusal(file_of_version(3)),
               AllOf(HasSubstr("version 3"), HasSubstr("reads version 2"), HasSubstr("newer program")));
-  EXPECT_THAT(refusal(file_of_version(1)),
+  EXPECT_THAT(format_refusal(file_of_version(1)),
               AllOf(HasSubstr("version 1"), HasSubstr("reads version 2"), HasSubstr("older program")));
 }
 
 TEST(MapFile, of_another_kind_is_refused) {
   const std::string text = "ply\nformat ascii 1.0\n";
-  EXPECT_THAT(refusal(io::bytes_of(text)), HasSubstr("not a map file"));
+  EXPECT_THAT(format_refusal(io::bytes_of(text)), HasSubstr("not a map file"));
 }
 
 /// A file whose checksums are right and whose contents are not.
@@ -194,7 +194,8 @@ class LyingMapFile : public ::testing::TestWithParam<Lie> {};
 TEST_P(LyingMapFile, is_refused_with_the_reason) {
   MapSnapshot snapshot = take_snapshot(sample_map());
   GetParam().fill(snapshot);
-  EXPECT_THAT(refusal(bytes_of_map(snapshot)), AllOf(HasSubstr("damaged at byte"), HasSubstr(GetParam().refusal)));
+  EXPECT_THAT(format_refusal(bytes_of_map(snapshot)),
+              AllOf(HasSubstr("damaged at byte"), HasSubstr(GetParam().refusal)));
 }
 
 constexpr std::size_t kPositionX = 4, kProbability = 4 + 8 * 8, kReference = 4 + 10 * 8 + 32;

@@ -12,7 +12,7 @@
 namespace rtd::slam {
 namespace {
 
-constexpr vision::RgbdProjection kCamera{500, 500, 320, 240};
+constexpr vision::RgbdProjection kWeighingCamera{500, 500, 320, 240};
 
 /// A frame that shows 300 points at 1 to 4 m with these errors (standard deviations), seen from the origin.
 struct NoisyFrame {
@@ -23,7 +23,7 @@ struct NoisyFrame {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> u(20, 620), v(20, 460), z(1, 4);
-    frame.camera = kCamera;
+    frame.camera = kWeighingCamera;
     for (std::uint32_t i = 0; i < count; ++i) {
       msg::Feature feature{};
       const double u_px = u(random), v_px = v(random), z_m = z(random);
@@ -31,7 +31,10 @@ struct NoisyFrame {
       feature.v_px = static_cast<float>(v_px + pixel_px * normal(random));
       feature.depth_m = static_cast<float>(1 / (1 / z_m + inverse_depth_per_m * normal(random)));
       frame.features.push_back(feature);
-      points.push_back({i, i, {(u_px - kCamera.cx) / kCamera.fx * z_m, (v_px - kCamera.cy) / kCamera.fy * z_m, z_m}});
+      points.push_back({i,
+                        i,
+                        {(u_px - kWeighingCamera.cx) / kWeighingCamera.fx * z_m,
+                         (v_px - kWeighingCamera.cy) / kWeighingCamera.fy * z_m, z_m}});
     }
   }
 };
