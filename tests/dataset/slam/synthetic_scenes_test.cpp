@@ -43,7 +43,7 @@ TEST_P(SyntheticScene, is_tracked_through) {
 INSTANTIATE_TEST_SUITE_P(
     Scenes, SyntheticScene,
     ::testing::Values(SceneDemand{"crowd", "crowd?frames=120&seed=2", 0.0159, 0.98, 0.75, 0.95},
-                      SceneDemand{"fill", "fill?frames=240&seed=3", 0.0125, 0.6, 0.85, 0.9},
+                      SceneDemand{"fill", "fill?frames=240&seed=3", 0.0248, 0.7, 0.85, 0.9},
                       // Odometry beside the map would follow the person: 0.1175 m. The map: 0.0083 m, and 0.0050 m when
                       // single pixels of the person were drawn otherwise.
                       SceneDemand{"fill_old_map", "fill?frames=240&seed=2", 0.0108, 0.5, 0.85, 0.9},

@@ -316,6 +316,7 @@ KeyframeSituation Tracker::keyframe_situation(const LocalMap& map, bool mapper_i
   situation.inliers = inliers_;
   situation.mapper_idle = mapper_idle;
   situation.covered = weighed_ || waits_apart() || support_.contradicted;
+  situation.mostly_unknown = support_.mostly_unknown;
   situation.settling = settling_since_ns_ && situation.since_keyframe_s >= config_.witness.after_s;
   situation.odometry = state_ == msg::TrackingState::kOdometry && !waits_apart();
   if (const LocalKeyframe* reference = map.find_keyframe(last_.reference)) {
@@ -354,7 +355,7 @@ bool wants_keyframe(const KeyframeSituation& s, const KeyframeConfig& config) {
   const bool overdue = s.since_keyframe_s >= config.max_gap_s;
   const bool convenient = s.since_keyframe_s >= config.min_gap_s && s.mapper_idle;
   const bool weak = s.inliers < config.weak_ratio * s.reference_landmarks || starving_of_close;
-  const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close;
+  const bool new_view = s.inliers < ratio * s.reference_landmarks || starving_of_close || s.mostly_unknown;
   return (s.settling || ((overdue || convenient || weak) && new_view)) && s.inliers > config.min_inliers && !s.covered;
 }
 

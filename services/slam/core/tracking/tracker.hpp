@@ -31,9 +31,10 @@ struct KeyframeSituation {
   int close_tracked = 0;        ///< close features that are landmarks
   int close_untracked = 0;      ///< close features that could become some
   bool mapper_idle = true;
-  bool odometry = false;  ///< the map is not recognised, and young or for long: it must grow here
-  bool settling = false;  ///< a new map needs a second look at what it shows
-  bool covered = false;   ///< something hides most of the view, and IMU or wheels help out
+  bool odometry = false;        ///< the map is not recognised, and young or for long: it must grow here
+  bool mostly_unknown = false;  ///< WitnessVerdict::mostly_unknown
+  bool settling = false;        ///< a new map needs a second look at what it shows
+  bool covered = false;         ///< something hides most of the view, and IMU or wheels help out
 };
 
 /// Whether to insert a keyframe if the mapper has room: ORB-SLAM2's rule for RGB-D, docs/theory/tracking.md Eq. (6).

@@ -59,7 +59,8 @@ WitnessVerdict judge_witnesses(const WitnessView& view, const WitnessConfig& con
   const bool found = view.expected >= kFewestTiles && view.found >= config.found_share * view.expected;
   verdict.witnessed = view.witnesses >= config.enough || found;
   verdict.contradicted = decisive && !verdict.witnessed;
-  verdict.carried = verdict.witnessed || (!decisive && view.agreeing >= config.wide_share * view.with_features);
+  verdict.mostly_unknown = view.agreeing < config.wide_share * view.with_features;
+  verdict.carried = verdict.witnessed || (!decisive && !verdict.mostly_unknown);
   return verdict;
 }
 

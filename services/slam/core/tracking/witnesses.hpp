@@ -18,9 +18,10 @@ WitnessView look_for_witnesses(const Frame& frame, const LocalMap& map, const Lo
 
 /// Who carries a pose. docs/theory/tracking.md, "Witnesses".
 struct WitnessVerdict {
-  bool witnessed = false;     ///< witnesses do
-  bool carried = true;        ///< they do, or much of a view in which there are hardly any: what rests may be learnt
-  bool contradicted = false;  ///< they should be seen and are not where the pose shows them: it is doubtful
+  bool witnessed = false;       ///< witnesses do
+  bool carried = true;          ///< they do, or much of a view in which there are hardly any: what rests may be learnt
+  bool mostly_unknown = false;  ///< little of the view is in the map: it needs a keyframe
+  bool contradicted = false;    ///< they should be seen and are not where the pose shows them: it is doubtful
 };
 WitnessVerdict judge_witnesses(const WitnessView& view, const WitnessConfig& config);
 

@@ -76,6 +76,17 @@ TEST(KeyframePolicy, waits_longer_while_the_map_is_one_keyframe) {
   EXPECT_TRUE(inserts(s));
 }
 
+TEST(KeyframePolicy, a_view_that_is_mostly_unknown_is_new_whatever_its_reference) {
+  KeyframeSituation s = steady();
+  s.inliers = s.reference_landmarks = 50;
+  s.close_tracked = 100;
+  EXPECT_FALSE(inserts(s));
+  s.mostly_unknown = true;
+  EXPECT_TRUE(inserts(s));
+  s.covered = true;
+  EXPECT_FALSE(inserts(s)) << "nothing may be learnt where witnesses contradict";
+}
+
 TEST(KeyframePolicy, keeps_the_configured_distance) {
   KeyframeSituation s = steady();
   s.inliers = 200;

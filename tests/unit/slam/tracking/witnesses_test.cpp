@@ -121,6 +121,7 @@ TEST(WitnessVerdict, a_new_view_is_carried_by_much_that_agrees) {
   EXPECT_FALSE(judge_witnesses(view, {}).contradicted);
   view.agreeing = 8;
   EXPECT_FALSE(judge_witnesses(view, {}).carried) << "one thing in a corner";
+  EXPECT_TRUE(judge_witnesses(view, {}).mostly_unknown) << "it needs a keyframe";
   EXPECT_FALSE(judge_witnesses(view, {}).contradicted) << "nothing says otherwise";
 }
 
