@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <thread>
 
 #include "tests/component/recorder/recorded_file.hpp"
@@ -31,10 +32,10 @@ TEST(RecordCyclone, types_unknown_to_this_program_are_recorded) {
   const fs::path folder = fs::temp_directory_path() / ("rtd_record_cyclone_" + std::to_string(getpid()));
   fs::create_directories(folder);
   RecorderProcess recorder(test_domain(), {"-o", folder / "run.mcap"});
-  const std::string command = std::string("CYCLONEDDS_URI=\"") + kOnLoopback +
-                              "\" timeout 30 " CYCLONE_WRITER_PATH " " + std::to_string(test_domain()) + ' ' +
-                              std::to_string(kMessages);
-  ASSERT_EQ(std::system(command.c_str()), 0);
+  std::ostringstream command;
+  command << "CYCLONEDDS_URI=\"" << kOnLoopback << "\" timeout 30 " CYCLONE_WRITER_PATH " " << test_domain() << ' '
+          << kMessages;
+  ASSERT_EQ(std::system(command.str().c_str()), 0);
   EXPECT_EQ(recorder.end_by(SIGINT), 0);
 
   const RecordedFile file = read_recording(folder / "run.mcap");
