@@ -70,15 +70,17 @@ struct ChildPipes {
 };
 
 /// Runs in the new process between fork and exec: async-signal-safe calls only, the launcher has other threads.
-[[noreturn]] void become(char* const* argv, char* const* environment, int niceness, ChildPipes pipes, pid_t parent) {
+[[noreturn]] void become(char* const* argv, char* const* environment, const ProcessSpec& spec, ChildPipes pipes,
+                         pid_t parent) {
   setpgid(0, 0);
-  [[maybe_unused]] const int priority = nice(niceness);
+  [[maybe_unused]] const int priority = nice(spec.niceness);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(1);  // it died before the line above
 
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
+  sigset_t blocked;
+  sigemptyset(&blocked);
+  if (spec.reads_signals) sigaddset(&blocked, SIGTERM);
+  sigprocmask(SIG_SETMASK, &blocked, nullptr);
   for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGHUP}) ::signal(number, SIG_DFL);
 
   const int null_fd = open("/dev/null", O_RDONLY);
@@ -194,8 +196,7 @@ ProcessId PosixProcessHost::start(const ProcessSpec& spec) {
   const pid_t parent = getpid();
   const pid_t pid = fork();
   if (pid == 0) {
-    become(argv.data(), signs_ ? environment.data() : environ, spec.niceness, {output.write_end, failure.write_end},
-           parent);
+    become(argv.data(), signs_ ? environment.data() : environ, spec, {output.write_end, failure.write_end}, parent);
   }
   close(output.write_end);
   close(failure.write_end);
@@ -298,10 +299,12 @@ ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signa
   PosixProcessHost host(on_line);
   const ProcessId process = host.start(spec);
   std::optional<ProcessExit> exit;
+  bool interrupted = false;
   while (!(exit = host.poll_exit(process))) {
     host.wait(kPollPeriod, signals.fd());
-    if (signals.take() > 0) host.terminate(process);
+    if (signals.take() > 0) std::exchange(interrupted, true) ? host.kill(process) : host.terminate(process);
   }
+  exit->interrupted = interrupted;
   return *exit;
 }
 

@@ -90,7 +90,7 @@ class PosixProcessHost : public ProcessHost {
   std::map<ProcessId, Child> children_;
 };
 
-/// Runs a command to its end. Each signal that arrives meanwhile is passed on as SIGTERM.
+/// Runs a command to its end. The first signal that arrives meanwhile is passed on as SIGTERM, the second kills it.
 ProcessExit run_to_end(const ProcessSpec& spec, service::InterruptSignals& signals,
                        const PosixProcessHost::OnLine& on_line);
 

@@ -27,6 +27,7 @@ struct ProcessExit {
   int signal = 0;  ///< the signal that ended it, 0 = it exited by itself
   double cpu_s = 0;
   double peak_rss_mb = 0;
+  bool interrupted = false;  ///< run_to_end() passed a signal on
 
   bool clean() const { return code == 0 && signal == 0; }
 };
@@ -37,7 +38,8 @@ std::string describe(const ProcessExit& exit);
 struct ProcessSpec {
   std::string name;                  ///< for messages and logs
   std::vector<std::string> command;  ///< path of the executable and its arguments
-  int niceness = 0;  ///< added to the launcher's own: 0 = the same priority, 19 = only idle processor time
+  int niceness = 0;            ///< added to the launcher's own: 0 = the same priority, 19 = only idle processor time
+  bool reads_signals = false;  ///< as service::InterruptSignals: SIGTERM does not end it before it does so
 };
 
 /// Starts and ends processes. Injected, so that the supervisor is tested without an operating system.

@@ -101,8 +101,11 @@ std::vector<JudgedFeature> unpack(const std::string& text) {
 Json processes_json(const std::map<std::string, ProcessUsage>& processes) {
   Json json = Json::object();
   for (const auto& [name, usage] : processes) {
-    json[name] = {
-        {"cpu_s", to_value(usage.cpu_s)}, {"peak_rss_mb", to_value(usage.peak_rss_mb)}, {"restarts", usage.restarts}};
+    json[name] = {{"cpu_s", to_value(usage.cpu_s)},
+                  {"peak_rss_mb", to_value(usage.peak_rss_mb)},
+                  {"restarts", usage.restarts},
+                  {"deaths", usage.deaths},
+                  {"died", usage.died}};
   }
   return json;
 }
@@ -174,6 +177,8 @@ void read_lists(const Json& json, RunRecord& record) {
     from_value(usage.at("cpu_s"), process.cpu_s);
     from_value(usage.at("peak_rss_mb"), process.peak_rss_mb);
     usage.at("restarts").get_to(process.restarts);
+    process.deaths = usage.value("deaths", 0);  // earlier versions did not write them
+    process.died = usage.value("died", std::string());
   }
   for (const Json& entry : json.at("clocks")) {
     HostClock clock{entry.at("service")};

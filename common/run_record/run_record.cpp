@@ -42,6 +42,16 @@ FrameUse frame_use(const RunRecord& record) {
   return use;
 }
 
+std::vector<std::string> deaths(const RunRecord& record, const std::vector<std::string>& services) {
+  std::vector<std::string> lines;
+  for (const auto& [name, process] : record.processes) {
+    if (process.deaths == 0 || (!services.empty() && std::ranges::find(services, name) == services.end())) continue;
+    lines.push_back(name + ' ' + process.died);
+    if (process.deaths > 1) lines.back() += " (" + std::to_string(process.deaths) + " times)";
+  }
+  return lines;
+}
+
 bool is_synthetic(const std::string& source_uri) {
   return camera::is_of_kind(source_uri, camera::SourceKind::kScene);
 }

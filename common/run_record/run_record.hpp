@@ -70,6 +70,8 @@ struct ProcessUsage {
   double cpu_s = 0;  ///< user + system
   double peak_rss_mb = 0;
   int restarts = 0;
+  int deaths = 0;
+  std::string died = {};  ///< how, the last time: "died: killed by signal 9 (SIGKILL)"
 };
 
 /// How far the clock of a service's host is ahead of the others' (common/service/peer_clocks.hpp).
@@ -116,6 +118,10 @@ struct FrameUse {
   std::string text() const;
 };
 FrameUse frame_use(const RunRecord& record);
+
+/// "camera died: killed by signal 9 (SIGKILL) (2 times)": one line for each of these services that died, all if none is
+/// named. Everything that is said about deaths has these words.
+std::vector<std::string> deaths(const RunRecord& record, const std::vector<std::string>& services = {});
 
 /// Whether the source knows which pixels move: a synthetic scene, or a TUM folder with mask/.
 bool has_true_masks(const std::string& source_uri);

@@ -24,6 +24,12 @@ void UsageBook::add_exit(const std::string& service, const process::ProcessExit&
   if (!entry.sampled) entry.usage.peak_rss_mb = std::max(entry.usage.peak_rss_mb, exit.peak_rss_mb);
 }
 
+void UsageBook::add_death(const std::string& service, const std::string& how) {
+  run_record::ProcessUsage& usage = entries_[service].usage;
+  ++usage.deaths;
+  usage.died = how;
+}
+
 std::map<std::string, run_record::ProcessUsage> UsageBook::usage() const {
   std::map<std::string, run_record::ProcessUsage> result;
   for (const auto& [name, entry] : entries_) result[name] = entry.usage;

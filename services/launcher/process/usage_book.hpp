@@ -19,6 +19,8 @@ class UsageBook {
  public:
   void add_sample(const std::string& service, double peak_rss_mb);
   void add_exit(const std::string& service, const process::ProcessExit& exit);
+  /// "died: killed by signal 9 (SIGKILL)".
+  void add_death(const std::string& service, const std::string& how);
   void add_restart(const std::string& service) { ++entries_[service].usage.restarts; }
   std::map<std::string, run_record::ProcessUsage> usage() const;
 

@@ -3,11 +3,13 @@
 #include "services/launcher/run/frame_verdict.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
+#include "common/camera/live_uri.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -37,10 +39,22 @@ std::vector<Cause> causes_of(const run_record::RunRecord& record) {
   return causes;
 }
 
+std::vector<std::string> deaths_on_the_way(const run_record::RunRecord& record) {
+  return run_record::deaths(record, {"camera", "filter", "slam"});
+}
+
 }  // namespace
+
+bool died_with_frames(const run_record::RunRecord& record) {
+  if (camera::is_live(record.source) && !run_record::deaths(record, {"camera"}).empty()) return true;
+  return record.frames_dropped + record.frames_not_played > 0 && !deaths_on_the_way(record).empty();
+}
 
 std::string why_not_used(const run_record::RunRecord& record, const std::string& first_left_out) {
   const run_record::FrameUse use = run_record::frame_use(record);
+  if (died_with_frames(record))
+    return fmt::format("only {} of {} frames were used: {}", use.used, use.given,
+                       fmt::join(deaths_on_the_way(record), "; "));
   if (10 * use.used >= 9 * use.given) return {};
   const std::vector<Cause> causes = causes_of(record);
   const Cause most = *std::ranges::max_element(causes, {}, &Cause::frames);

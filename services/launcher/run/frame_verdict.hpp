@@ -8,8 +8,13 @@
 
 namespace rtd::launcher {
 
-/// Why frames of a run were not used: how many were, the commonest cause and what helps. `first_left_out`: the first
-/// piece that the source left out, as the camera describes it; may be empty. Empty when nine of ten frames were used.
+/// Whether frames are missing because camera, filter or slam died: what a running camera would have given meanwhile is
+/// among them.
+bool died_with_frames(const run_record::RunRecord& record);
+
+/// Why frames of a run were not used: how many were, the service that died with them or the commonest cause, and what
+/// helps. `first_left_out`: the first piece that the source left out, as the camera describes it; may be empty. Empty
+/// when nine of ten frames were used and none died with a service.
 std::string why_not_used(const run_record::RunRecord& record, const std::string& first_left_out);
 
 }  // namespace rtd::launcher

@@ -65,11 +65,11 @@ void print_setup(const RunSetup& setup, Terminal& terminal) {
   for (const std::string& note : setup.source_notes) terminal.print("  " + note);
 }
 
-service::ExitCode exit_code(RunOutcome outcome, bool tracked_any, bool too_few) {
+service::ExitCode exit_code(RunOutcome outcome, bool tracked_any, bool partial) {
   if (outcome == RunOutcome::kInterrupted) return service::kInterrupted;
   if (outcome == RunOutcome::kConfigError) return service::kUsageOrConfig;
   if (outcome != RunOutcome::kComplete || !tracked_any) return service::kRunFailed;
-  return too_few ? service::kPartialLoss : service::kOk;
+  return partial ? service::kPartialLoss : service::kOk;
 }
 
 /// What the launcher leaves in the folder of the run beside what the services wrote.
@@ -95,24 +95,30 @@ void join_trajectory(run_record::RunRecord& record, const std::string& out_dir) 
                   std::ranges::count(before, '\n')));
 }
 
+struct Report {
+  ReportState state = ReportState::kNone;
+  bool interrupted = false;  ///< Ctrl-C came while it was made
+};
+
 /// rtd-eval makes the report from run.json and prints the table that ends a run.
-ReportState make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals,
-                        Terminal& terminal) {
+Report make_report(const std::string& out_dir, bool quiet, service::InterruptSignals& signals, Terminal& terminal) {
   const std::string executable = process::find_executable("rtd-eval");
   if (executable.empty()) {
     terminal.warn("rtd: no report: " + process::missing_executable("rtd-eval") + ", then run 'rtd report " + out_dir +
                   "'");
-    return ReportState::kNone;
+    return {};
   }
   std::string output;
   std::vector<std::string> command = {executable, "report", out_dir};
   if (quiet) command.emplace_back("--quiet");
-  const process::ProcessExit exit = process::run_to_end(
-      {"rtd-eval", command}, signals, [&](const std::string&, const std::string& line) { output += line + '\n'; });
+  const process::ProcessExit exit =
+      process::run_to_end({.name = "rtd-eval", .command = command, .reads_signals = true}, signals,
+                          [&](const std::string&, const std::string& line) { output += line + '\n'; });
   (exit.clean() ? std::cout : std::cerr) << output << std::flush;
-  if (exit.clean()) return ReportState::kWritten;
-  terminal.warn("rtd: no report: rtd-eval: " + describe(exit) + "; " + out_dir + "/run.json has the data of the run");
-  return ReportState::kFailed;
+  if (exit.clean()) return {ReportState::kWritten, exit.interrupted};
+  terminal.warn("rtd: no report: rtd-eval: " + describe(exit) + "; " + out_dir +
+                "/run.json has the data of the run: 'rtd report " + out_dir + "' makes it");
+  return {ReportState::kFailed, exit.interrupted};
 }
 
 /// The services inherit where to write their parts.
@@ -145,19 +151,22 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   end_trace(setup, terminal);
   run_record::RunRecord record = session.record();
   const std::string not_used = why_not_used(record, session.camera_message());
-  result.code = exit_code(outcome, session.tracked_any(), run_record::frame_use(record).too_few());
+  const bool partial =
+      run_record::frame_use(record).too_few() || died_with_frames(record) || session.slam_lost_its_world();
+  result.code = exit_code(outcome, session.tracked_any(), partial);
   if (outcome == RunOutcome::kConfigError) return result;
   if (!not_used.empty()) record.events.push_back(not_used);
   if (session.slam_kept_its_world()) join_trajectory(record, setup.out_dir);
   write_record(record, setup.out_dir);
-  result.report = make_report(setup.out_dir, setup.quiet, signals, terminal);
+  const Report report = make_report(setup.out_dir, setup.quiet, signals, terminal);
+  result.report = report.state;
   if (result.report == ReportState::kFailed) result.code = service::kRunFailed;
   if (outcome == RunOutcome::kComplete && !session.tracked_any()) terminal.warn("rtd: no frame got a pose");
   if (outcome != RunOutcome::kInterrupted && !not_used.empty()) terminal.warn("rtd: " + not_used);
   if (outcome == RunOutcome::kInterrupted) terminal.print("rtd: interrupted, partial results are in " + setup.out_dir);
-  session.keep_viewer();
-  end.begin(result.code,
-            outcome == RunOutcome::kInterrupted ? service::BoundedEnd::kWhenAsked : service::BoundedEnd::kByItself);
+  report.interrupted ? session.end_viewer() : session.keep_viewer();
+  end.begin(result.code, outcome == RunOutcome::kInterrupted || report.interrupted ? service::BoundedEnd::kWhenAsked
+                                                                                   : service::BoundedEnd::kByItself);
   return result;
 }
 

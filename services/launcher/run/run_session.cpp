@@ -199,7 +199,16 @@ bool RunSession::waits_for_page(const ServicePlan& source) {
 void RunSession::keep_viewer() {
   if (!supervisor_.rest_runs()) return;
   terminal_.warn("rtd: the page stays until Ctrl-C: " + viewer_line_);
-  milliseconds grace(setup_.launcher.interrupt_grace_ms);
+  wait_for_viewer(milliseconds(setup_.launcher.interrupt_grace_ms));
+}
+
+void RunSession::end_viewer() {
+  supervisor_.end_rest(now(), milliseconds(setup_.launcher.interrupt_grace_ms));
+  wait_for_viewer(milliseconds(0));
+}
+
+/// `grace`: after the next signal; one more has none.
+void RunSession::wait_for_viewer(milliseconds grace) {
   while (supervisor_.rest_runs()) {
     host_.wait(kTick, signals_.fd());
     if (signals_.take() > 0) supervisor_.end_rest(now(), std::exchange(grace, milliseconds(0)));
@@ -237,6 +246,7 @@ void RunSession::on_event(const SupervisorEvent& event) {
     case Kind::kDied:
     case Kind::kGivenUp:
       usage_.add_exit(event.service, event.exit);
+      if (!event.how.empty()) usage_.add_death(event.service, event.how);
       note(event.text);
       return explain(event.service, event.exit.signal == 0 ? logs_.reason(event.service) : logs_.tail(event.service));
   }

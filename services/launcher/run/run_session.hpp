@@ -30,6 +30,8 @@ class RunSession {
   RunOutcome run(const std::vector<ServicePlan>& plans);
   /// After run(): the viewer that outlives it stays until it is asked to end.
   void keep_viewer();
+  /// Asks it to end now, and waits for that.
+  void end_viewer();
   /// What was observed; call it after run().
   run_record::RunRecord record() const;
   /// At the end the first piece that the source left out; may be empty.
@@ -37,6 +39,7 @@ class RunSession {
   bool tracked_any() const { return collector_.tracked_any(); }
   /// Slam was restarted, each time with the map of a checkpoint: its poses before and after are in one world.
   bool slam_kept_its_world() const { return slam_restarts_ > 0 && slam_worlds_lost_ == 0; }
+  bool slam_lost_its_world() const { return slam_worlds_lost_ > 0; }
 
  private:
   using Milliseconds = std::chrono::milliseconds;
@@ -51,6 +54,7 @@ class RunSession {
   std::chrono::milliseconds interrupt_grace() const;
   void stop_when_decided(Milliseconds now);
   void sample_memory(Milliseconds now);
+  void wait_for_viewer(Milliseconds grace);
   void note(const std::string& text);
   ServicePlan counted(ServicePlan plan);
   std::vector<std::string> continue_camera() const;
@@ -68,7 +72,7 @@ class RunSession {
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
   std::vector<std::string> awaited_;  ///< services that the source waits for
-  std::string viewer_line_;  ///< its addresses, as it printed them
+  std::string viewer_line_;           ///< its addresses, as it printed them
   bool page_was_open_ = false, wait_shown_ = false;
   int slam_restarts_ = 0, slam_worlds_lost_ = 0;
 };

@@ -26,6 +26,7 @@ export class RobotState {
     this.tracking = null;
     this.trackingAt_ms = -Infinity;  // browser's clock
     this.services = [];
+    this.deaths = new Map();  // how often each service was restarted without having ended
     this.movers = [];
     this.commands = [];
     this.playback = null;
@@ -73,6 +74,11 @@ export class RobotState {
   }
 
   setServices(services) {
+    for (const { name, pid } of services) {
+      const before = this.services.find((one) => one.name === name);
+      if (before?.state === "finished" && before.pid !== pid) this.deaths.delete(name);   // another run
+      else if (before && before.pid !== pid) this.deaths.set(name, (this.deaths.get(name) ?? 0) + 1);
+    }
     this.services = services;
     this.events.services(services, this.tracking, this.playback);
   }

@@ -78,6 +78,9 @@ export function hasEnded(robot) {
 function withoutPoses(robot, age_ms) {
   const { playback, services } = robot;
   if (playback?.state === "paused") return { ...report("wait", "Paused", `at ${playback.position_s.toFixed(1)} s of the recording`), quiet: true };
+  const died = [...robot.deaths.keys()].filter((name) => ["camera", "filter", "slam"].includes(name));
+  if (hasEnded(robot) && died.length > 0)
+    return report("warn", `${died.join(" and ")} died on the way`, "The rest of the source was played: frames may be missing. The report of the run says more.");
   if (hasEnded(robot)) return { ...report("wait", "The source has ended", "Its map stays as long as the viewer runs."), quiet: true };
   const sources = sourcesOf(robot), gone = sources.find(({ state }) => state === "gone");
   if (gone && sources.every(({ state }) => kStopped.includes(state))) return report("bad", `The ${gone.name} is gone`, "It sends no heartbeat: it died, was killed, or its host is away.");

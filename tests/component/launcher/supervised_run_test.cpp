@@ -104,13 +104,39 @@ TEST_F(SupervisedRunTest, a_report_that_cannot_be_made_fails_the_run) {
 
 TEST_F(SupervisedRunTest, ctrl_c_while_the_report_is_made_is_passed_on) {
   fs::remove(scratch_ / "bin/rtd-eval");
-  script("eval", "trap 'echo stopped early; exit 0' TERM; echo judging > " + (scratch_ / "judging") +
-                     "; while :; do sleep 0.05; done");
+  script("eval", "echo judging > " + (scratch_ / "judging") +
+                     "; exec python3 -c 'import signal; signal.sigwait({signal.SIGTERM}); print(\"stopped early\")'");
+  rtd_.start(arguments());
+  while (!fs::exists(scratch_ / "judging")) usleep(10'000);
+  rtd_.interrupt();  // before it reads signals
+  EXPECT_EQ(rtd_.wait(), 1) << "the run itself had ended without a pose";
+  EXPECT_THAT(rtd_.output(), HasSubstr("stopped early"));
+}
+
+TEST_F(SupervisedRunTest, a_second_ctrl_c_ends_the_report_and_names_its_command) {
+  fs::remove(scratch_ / "bin/rtd-eval");
+  script("eval", "echo judging > " + (scratch_ / "judging") + "; while :; do sleep 0.05; done");
   rtd_.start(arguments());
   while (!fs::exists(scratch_ / "judging")) usleep(10'000);
   rtd_.interrupt();
+  rtd_.wait_for("never printed", std::chrono::milliseconds(200));
+  rtd_.interrupt();
+  EXPECT_EQ(rtd_.wait(), 1);
+  EXPECT_THAT(rtd_.output(), HasSubstr("'rtd report " + (scratch_ / "out") + "' makes it"));
+}
+
+TEST_F(SupervisedRunTest, one_ctrl_c_while_the_report_is_made_ends_the_viewer_too) {
+  fs::remove(scratch_ / "bin/rtd-eval");
+  script("eval", "echo judging > " + (scratch_ / "judging") +
+                     "; exec python3 -c 'import signal; signal.sigwait({signal.SIGTERM})'");
+  script("viewer",
+         "echo 'viewer: http://localhost:1'; trap 'echo asked to end; exit 0' TERM; while :; do sleep 0.05; done");
+  rtd_.start(arguments({"--viewer=now"}));
+  while (!fs::exists(scratch_ / "judging")) usleep(10'000);
+  rtd_.interrupt();
   EXPECT_EQ(rtd_.wait(), 1) << "the run itself had ended without a pose";
-  EXPECT_THAT(rtd_.output(), HasSubstr("stopped early"));
+  EXPECT_THAT(log("viewer"), HasSubstr("asked to end"));
+  EXPECT_THAT(rtd_.output(), Not(HasSubstr("the page stays")));
 }
 
 TEST_F(SupervisedRunTest, a_refused_configuration_ends_the_run_with_the_services_own_words) {
@@ -178,6 +204,8 @@ TEST_F(SupervisedRunTest, a_crashed_service_is_restarted_and_the_report_says_why
   for (const std::string& reported : {rtd_.output(), text_of(scratch_ / "out/report.json")})
     EXPECT_THAT(reported, AllOf(HasSubstr("filter died: killed by signal 11 (SIGSEGV), restart in 200 ms"),
                                 HasSubstr("filter restarted (1st time)")));
+  EXPECT_THAT(rtd_.output(), HasSubstr("died        filter died: killed by signal 11 (SIGSEGV)\n"));
+  EXPECT_THAT(text_of(scratch_ / "out/report.json"), HasSubstr("\"filter died: killed by signal 11 (SIGSEGV)\""));
 }
 
 TEST_F(SupervisedRunTest, services_are_restarted_although_the_output_of_the_run_is_not_read) {

@@ -47,5 +47,26 @@ TEST(WhyNotUsed, names_causes_behind_the_source_too) {
   EXPECT_THAT(why_not_used(record, ""), HasSubstr("7 x without_answer: slam gave no result"));
 }
 
+TEST(WhyNotUsed, frames_that_a_service_took_with_it_are_its_fault_however_few) {
+  run_record::RunRecord record = run_of(200, 0);
+  record.processes["camera"] = {.restarts = 5, .deaths = 5, .died = "died: killed by signal 9 (SIGKILL)"};
+  EXPECT_FALSE(died_with_frames(record)) << "it continued where it was";
+  EXPECT_THAT(why_not_used(record, ""), IsEmpty());
+  record.frames_dropped = record.drops["camera.late"] = 12;
+  EXPECT_TRUE(died_with_frames(record));
+  EXPECT_EQ(why_not_used(record, ""),
+            "only 188 of 200 frames were used: camera died: killed by signal 9 (SIGKILL) (5 times)");
+  record.processes["detector"] = record.processes["camera"];
+  record.processes.erase("camera");
+  EXPECT_FALSE(died_with_frames(record)) << "a frame needs no detector";
+}
+
+TEST(WhyNotUsed, what_a_running_camera_did_not_give_while_it_was_dead_is_missing) {
+  run_record::RunRecord record = run_of(200, 0);
+  record.processes["camera"] = {.restarts = 1, .deaths = 1, .died = "died: exit code 1"};
+  record.source = "ros2:/color,/depth";
+  EXPECT_TRUE(died_with_frames(record));
+}
+
 }  // namespace
 }  // namespace rtd::launcher

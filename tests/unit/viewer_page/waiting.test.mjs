@@ -61,6 +61,18 @@ test("when no pose comes, the reason: paused, ended, slam gone, unknown", () => 
                    "a recording needs no slam");
 });
 
+test("a source of which a part is missing has not simply ended", () => {
+  const robot = robotWith([], tracked("ok")), camera = (pid, state) => robot.setServices([{ ...service("camera", state), pid }, { ...service("slam"), pid: 9 }]);
+  camera(1, "running");
+  camera(1, "gone");
+  camera(2, "running");
+  camera(2, "finished");
+  assert.equal(title(robot, 10_000), "camera died on the way");
+  camera(3, "running");
+  camera(3, "finished");
+  assert.equal(title(robot, 10_000), "The source has ended", "of the next run");
+});
+
 test("a server of another protocol is not tried", () => {
   assert.equal(title(undefined, 0, open, { ...hello, protocol: 2 }), "Page and server do not match");
 });

@@ -116,6 +116,7 @@ void add_processes(const Run& run, Json& report) {
     report["peak_rss_mb"][name] = number_or_null(usage.peak_rss_mb);
     report["restarts"][name] = usage.restarts;
   }
+  report["deaths"] = run_record::deaths(run);
 }
 
 Json lost_json(const RunSummary& summary) {
@@ -200,6 +201,7 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
   const auto row = [](const char* name, const std::string& value) { return fmt::format("  {:<12}{}\n", name, value); };
   std::string text = "\n";
   text += row("frames", summary.frames.text() + lost_places(run));
+  for (const std::string& death : run_record::deaths(run)) text += row("died", death);
   text += row("coverage", number(100 * summary.coverage, "{:.1f}", " %"));
   text += row("ATE rmse", both_ates(summary));
   if (const Drift* drift = drift_of(summary); drift != nullptr && drift->nearly_constant())

@@ -9,7 +9,7 @@ namespace rtd::launcher {
 namespace {
 
 constexpr int kExitUsageOrConfig = 2, kExitAlreadyRuns = 4;
-constexpr int kMostPatience = 10;  // times as long for one that gets no processor
+constexpr int kMostPatience = 10;               // times as long for one that gets no processor
 constexpr Supervisor::Clock kStoodStill{1000};  // update() is called many times in it
 
 /// "1st", "2nd", "3rd", "4th", ..., "11th".
@@ -188,15 +188,15 @@ void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock n
 }
 
 void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock now) {
-  const std::string hung = " hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
-  const std::string what = child.plan.name + (child.killed ? hung : " died: " + describe(exit));
+  const std::string hung = "hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
+  const std::string how = child.killed ? hung : "died: " + describe(exit), what = child.plan.name + ' ' + how;
   const bool gave_up = exit.signal == 0 && !child.killed;
   if (child.plan.role == ServiceRole::kSource && (gave_up || !child.plan.when_restarted)) {
-    report(SupervisorEvent::Kind::kGivenUp, child, what, exit);
+    report(SupervisorEvent::Kind::kGivenUp, child, what, exit, how);
     return decide(RunOutcome::kFailed);
   }
   if (child.plan.role == ServiceRole::kLive && gave_up && child.plan.has_served && !child.plan.has_served()) {
-    report(SupervisorEvent::Kind::kGivenUp, child, what + " before its first frame: not started again", exit);
+    report(SupervisorEvent::Kind::kGivenUp, child, what + " before its first frame: not started again", exit, how);
     return decide(RunOutcome::kFailed);
   }
   const bool healthy = now - child.started >= options_.healthy_after;
@@ -206,7 +206,7 @@ void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock 
     report(SupervisorEvent::Kind::kGivenUp, child,
            what + ", " + std::to_string(child.deaths_in_row) + " times in a row: given up" +
                (optional ? ", the run continues without it" : ""),
-           exit);
+           exit, how);
     if (!optional) decide(RunOutcome::kFailed);
     return;
   }
@@ -214,7 +214,7 @@ void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock 
   child.state = State::kWaiting;
   child.restart_at = now + pause;
   const std::string when = healthy ? "at once" : "in " + std::to_string(pause.count()) + " ms";
-  report(SupervisorEvent::Kind::kDied, child, what + ", restart " + when, exit);
+  report(SupervisorEvent::Kind::kDied, child, what + ", restart " + when, exit, how);
 }
 
 void Supervisor::decide(RunOutcome outcome) {
@@ -222,8 +222,8 @@ void Supervisor::decide(RunOutcome outcome) {
 }
 
 void Supervisor::report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
-                        const process::ProcessExit& exit) {
-  if (on_event_) on_event_({kind, child.plan.name, text, child.process, exit});
+                        const process::ProcessExit& exit, const std::string& how) {
+  if (on_event_) on_event_({kind, child.plan.name, text, child.process, exit, how});
 }
 
 }  // namespace rtd::launcher

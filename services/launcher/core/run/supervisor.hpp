@@ -63,6 +63,7 @@ struct SupervisorEvent {
   std::string text;  ///< one line, names service and reason
   process::ProcessId process = 0;
   process::ProcessExit exit{};  ///< kDied, kGivenUp, kRefused, kEnded, kKilled
+  std::string how = {};  ///< kDied, kGivenUp: "died: killed by signal 9 (SIGKILL)", "hung for 3 s and was killed"
 };
 
 /// Keeps the services of one run alive: restarts what dies, kills what hangs, decides when the run is over, ends
@@ -125,7 +126,7 @@ class Supervisor {
   bool others_ended() const;
   void decide(RunOutcome outcome);
   void report(SupervisorEvent::Kind kind, const Child& child, const std::string& text,
-              const process::ProcessExit& exit = {});
+              const process::ProcessExit& exit = {}, const std::string& how = {});
 
   process::ProcessHost& host_;
   SupervisorOptions options_;
