@@ -10,6 +10,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/geometry/transform_log.hpp"
+#include "common/io/printable.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -58,6 +59,13 @@ std::string place_named(const std::string& frame_id) {
 
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth) {
   return names_a_place(color.frame_id) && geometry::bare_frame(color.frame_id) == geometry::bare_frame(depth.frame_id);
+}
+
+std::string of_other_camera(const ImageOrigin& followed, const std::string& frame_id) {
+  if (geometry::bare_frame(frame_id) == geometry::bare_frame(followed.frame_id)) return {};
+  return fmt::format("images of two cameras come on {}, in frames '{}' and '{}': those in '{}' are played",
+                     followed.topic, io::abridged(followed.frame_id), io::abridged(frame_id),
+                     io::abridged(followed.frame_id));
 }
 
 std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth) {

@@ -31,6 +31,9 @@ std::string place_named(const std::string& frame_id);
 /// Both images are in one frame that has a name: what differs is the raster alone.
 bool same_place(const ImageOrigin& color, const ImageOrigin& depth);
 
+/// Why an image in frame `frame_id` is not of this camera: another one sends on its topic. Empty when it is.
+std::string of_other_camera(const ImageOrigin& followed, const std::string& frame_id);
+
 /// The farthest that a point of the image lies apart in the two pinhole images, px; infinite for images of two sizes.
 double difference_px(const geometry::CameraModel& a, const geometry::CameraModel& b);
 

@@ -38,6 +38,9 @@ constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
     {"damaged_record", "the recording is damaged: 'rtd record recover FILE' saves what can be read"},
     {"overrun", "images came faster than they were taken: choose a lower rate or size of the camera"},
     {"color_frozen", "the colour image did not change for a second: unplug the camera and plug it in again"},
+    {"repeated", "images come more than once, with the same bytes and stamp: each counts once"},
+    {"other_camera",
+     "two cameras send on one topic, and only the first is followed: give each of them topics of its own, or stop one"},
 }};
 
 }  // namespace
@@ -62,7 +65,7 @@ std::uint64_t SourceCounters::skipped_total() const {
 
 std::uint64_t SourceCounters::frames_left_out() const {
   const std::uint64_t alone = of(SkipReason::kNoDepthPartner);
-  return skipped_total() - alone + std::min(alone, depth_alone);
+  return skipped_total() - of(SkipReason::kRepeated) - alone + std::min(alone, depth_alone);
 }
 
 std::string why_unread(const io::IoError& error) {
@@ -71,7 +74,8 @@ std::string why_unread(const io::IoError& error) {
 }
 
 void SkipLog::add(SkippedInput input) {
-  if (input.reason != SkipReason::kNoDepthPartner && input.reason != SkipReason::kOverrun) {
+  constexpr std::array kUsable = {SkipReason::kNoDepthPartner, SkipReason::kOverrun, SkipReason::kRepeated};
+  if (std::ranges::find(kUsable, input.reason) == kUsable.end()) {
     ++unusable_;
     newest_ = input.detail;
   }

@@ -38,8 +38,10 @@ enum class SkipReason {
   kDamagedRecord,    ///< a piece of a recording that cannot be read
   kOverrun,          ///< running camera: the message came before earlier ones were processed
   kColorFrozen,      ///< running camera: the colour image has not changed for a second
+  kRepeated,         ///< the frame before once more, the same bytes with the same stamp: nothing is lost
+  kOtherCamera,      ///< of another camera that sends on the same topic
 };
-inline constexpr std::size_t kSkipReasons = 11;
+inline constexpr std::size_t kSkipReasons = 13;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);
@@ -63,7 +65,7 @@ struct SourceCounters {
   std::uint64_t depth_alone = 0;                      ///< depth images that no colour image was found for
   std::uint64_t skipped_total() const;
   /// Frames that the source had and did not hand out. Colour images without depth count as far as depth images were
-  /// left over: where depth comes at half the rate of colour, every second colour image is none.
+  /// left over: where depth comes at half the rate of colour, every second colour image is none. Repeats do not count.
   std::uint64_t frames_left_out() const;
   std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
 };

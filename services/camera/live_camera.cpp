@@ -11,6 +11,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -30,6 +31,35 @@
 namespace rtd::camera {
 namespace {
 
+/// Lets the images of the publisher pass that came first, until it is gone or silent for a second. Two cameras may send
+/// on one topic, also from one process, which SourceGate takes for one source. Thread-safe.
+class FirstPublisher {
+ public:
+  bool accepts(const bus::WriterId& writer) {
+    constexpr std::int64_t kSilentNs = 1'000'000'000;
+    const std::int64_t now_ns = service::monotonic_ns();
+    const std::lock_guard lock(mutex_);
+    if (!followed_ || now_ns - received_ns_ > kSilentNs) followed_ = writer;
+    const bool first = followed_ == writer;
+    first ? void(received_ns_ = now_ns) : void(++refused_);
+    return first;
+  }
+  void forget(const bus::WriterId& writer) {
+    const std::lock_guard lock(mutex_);
+    if (followed_ == writer) followed_.reset();
+  }
+  std::uint64_t refused() const {
+    const std::lock_guard lock(mutex_);
+    return refused_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<bus::WriterId> followed_;
+  std::int64_t received_ns_ = 0;
+  std::uint64_t refused_ = 0;
+};
+
 /// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it
 /// (TopicFollower): best effort where a writer offers no more (ROS 2's sensor data profile).
 class Ros2Feed final : public LiveFeed {
@@ -41,6 +71,7 @@ class Ros2Feed final : public LiveFeed {
   void clear() override;
   void end_transforms() override { wants_transforms_ = false; }
   std::uint64_t dropped() const override { return queue_.dropped(); }
+  std::uint64_t of_others() const override { return color_publisher_.refused(); }
   std::int64_t now_ns() const override { return service::monotonic_ns(); }
   std::string state_of(const std::string& topic) const override;
   bool is_published(const std::string& topic) const override { return publishers(topic).readable > 0; }
@@ -57,9 +88,11 @@ class Ros2Feed final : public LiveFeed {
 
   const std::uint32_t domain_;
   const bool loopback_only_;
+  FirstPublisher color_publisher_, depth_publisher_;
   concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
   std::atomic<bool> wants_transforms_{true};
+  const std::string color_topic_, depth_topic_;
   /// By the ROS names of the topics that are read: the types that can be read, plain_type().
   const std::map<std::string, std::set<std::string>> types_;
   bus::TopicFollower follower_;
@@ -76,7 +109,8 @@ constexpr const char* kTransform = "tf2_msgs/TFMessage";
 /// rtd's own images come from no camera.
 bool is_ours(const std::string& dds_topic) {
   using namespace bus::topics;
-  return dds_topic == kColorJpeg.name || dds_topic == kPersonMasks.name || dds_topic == kDynamicMask.name;
+  return dds_topic == kColorJpeg.name || dds_topic == kPersonMasks.name || dds_topic == kDynamicMask.name ||
+         dds_topic == kDepthJpeg.name;
 }
 
 std::string plain_dds_type(const bus::RawTopic& topic) {
@@ -88,6 +122,8 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
       loopback_only_(options.network.loopback_only),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
       bus_(bus::connect_raw(options)),
+      color_topic_(topics.color),
+      depth_topic_(topics.depth),
       types_{{topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
              {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}},
       follower_(*bus_, {.wants = [this](const bus::TopicWriter& writer) { return can_read(writer); },
@@ -117,9 +153,16 @@ bool Ros2Feed::can_read(const bus::TopicWriter& writer) const {
 
 bus::RawHandlers Ros2Feed::handlers(const bus::RawTopic& topic) {
   bus::RawHandlers handlers;
-  handlers.on_sample = [this, name = ros2::ros_topic(topic.name),
-                        type = plain_dds_type(topic)](const bus::RawSample& sample) {
+  const std::string read = ros2::ros_topic(topic.name);
+  FirstPublisher* const first = read == color_topic_   ? &color_publisher_
+                                : read == depth_topic_ ? &depth_publisher_
+                                                       : nullptr;
+  handlers.status.on_writer = [first](const bus::WriterId& writer, bool matched) {
+    if (first != nullptr && !matched) first->forget(writer);
+  };
+  handlers.on_sample = [this, name = read, type = plain_dds_type(topic), first](const bus::RawSample& sample) {
     if (type == kTransform && !wants_transforms_) return;
+    if (first != nullptr && !first->accepts(sample.writer)) return;
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(sample.cdr().data());
     queue_.push({name, now_ns(), ros::Wire::kCdr, {bytes, bytes + sample.cdr().size()}, type});
   };

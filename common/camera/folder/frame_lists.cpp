@@ -138,7 +138,9 @@ std::vector<Entry> increasing(const std::vector<Entry>& entries, std::vector<Ski
     if (kept.empty() || color.stamp_ns > color_of(kept.back()).stamp_ns) {
       kept.push_back(entry);
     } else if (color.stamp_ns == color_of(kept.back()).stamp_ns) {
-      skipped.push_back({SkipReason::kStampDoubled, color.file + " has the stamp of the frame before"});
+      const bool same = color.file == color_of(kept.back()).file;
+      skipped.push_back({same ? SkipReason::kRepeated : SkipReason::kStampDoubled,
+                         color.file + (same ? " is listed twice" : " has the stamp of the frame before")});
     } else {
       skipped.push_back({SkipReason::kStampBackwards, color.file + " is older than the frame before"});
     }

@@ -38,7 +38,7 @@ class FramePairer {
   FramePairer() = default;
   explicit FramePairer(const Options& options) : options_(options) {}
 
-  /// A colour image that is not newer than the one before is left out and counted.
+  /// A colour image that is not newer than the one before is left out and counted, as a repeat if it is the same.
   void add_color(StampedMessage color, SkipLog& skips);
   void add_depth(StampedMessage depth);
   /// Nothing more comes: what is left is decided.
@@ -55,6 +55,7 @@ class FramePairer {
   const Options options_;
   std::deque<StampedMessage> colors_, depths_;  ///< by stamp
   std::optional<std::int64_t> last_color_ns_;
+  std::size_t last_color_print_ = 0;
   std::uint64_t depth_alone_ = 0;  ///< not counted yet
   std::int64_t newest_recorded_ns_ = 0;
   bool finished_ = false;

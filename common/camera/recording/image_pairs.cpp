@@ -102,6 +102,24 @@ std::optional<Eigen::Isometry3d> recorded_extrinsics(recordings::Reader& recordi
   return tf_extrinsics(recording, all, color, depth);
 }
 
+/// Two cameras may send on the topic in turn: of the first messages the one whose frame has most in common with that of
+/// the colour images.
+RecordedMessage first_beside(recordings::Reader& recording, const std::string& topic, const std::string& color_frame) {
+  constexpr int kLookedAt = 4;
+  RecordedMessage best = first_of(recording, topic);
+  const auto in_common = [&](const RecordedMessage& message) {
+    const std::string frame = ros::decode<msg::Header>(message.wire, message.bytes).frame_id;
+    return std::ranges::mismatch(frame, color_frame).in1 - frame.begin();
+  };
+  recording.play({topic});
+  for (int i = 0; i < kLookedAt; ++i) {
+    std::optional<RecordedMessage> message = recording.next();
+    if (!message) break;
+    if (in_common(*message) > in_common(best)) best = std::move(*message);
+  }
+  return best;
+}
+
 class ImagePairs final : public RecordingSource {
  public:
   ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> recording, const RecordingOptions& options);
@@ -118,7 +136,6 @@ class ImagePairs final : public RecordingSource {
   void look_at_first_images(const RecordingOptions& options);
   /// Whether the driver left all stamps of a topic at 0; then the times of recording take their place.
   bool lacks_stamps(const std::string& topic);
-  std::int64_t stamp_of(const RecordedMessage& message) const;
   void load_calibration(const RecordingOptions& options);
   void load_recorded_camera();
   void take_floats_per_metre(double per_metre);
@@ -163,9 +180,11 @@ ImagePairs::ImagePairs(std::string uri, std::unique_ptr<recordings::Reader> play
 }
 
 void ImagePairs::look_at_first_images(const RecordingOptions& options) {
-  const RecordedMessage color = first_of(*recording_, topics_.color), depth = first_of(*recording_, topics_.depth);
+  const RecordedMessage color = first_of(*recording_, topics_.color);
+  color_ = {topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, {}, {}};
+  const RecordedMessage depth = first_beside(*recording_, topics_.depth, color_.frame_id);
   const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, float_step_);
-  color_ = {topics_.color, ros::decode<msg::Header>(color.wire, color.bytes).frame_id, color_image.image.size(), {}};
+  color_.size_px = color_image.image.size();
   info_.frame_id = place_named(color_.frame_id);
   depth_ = {topics_.depth, ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id, depth_image.image.size(), {}};
   for (const ImageRead* image : {&color_image, &depth_image}) {
@@ -202,11 +221,6 @@ bool ImagePairs::lacks_stamps(const std::string& topic) {
     if (msg::to_ns(ros::decode<msg::Header>(message->wire, message->bytes).stamp) == 0) ++unstamped;
   }
   return images == 2 && unstamped == 2;
-}
-
-std::int64_t ImagePairs::stamp_of(const RecordedMessage& message) const {
-  if (by_time_of_recording_) return message.recorded_ns;
-  return msg::to_ns(ros::decode<msg::Header>(message.wire, message.bytes).stamp);
 }
 
 /// The camera of a CameraInfo; empty when the recording has none.
@@ -288,7 +302,13 @@ void ImagePairs::take(RecordedMessage message) {
     if (!is_color && message.topic != topics_.depth) {
       return transforms_.add(ros::decode<msg::TFMessage>(message.wire, message.bytes));
     }
-    StampedMessage stamped{stamp_of(message), std::move(message)};
+    const auto header = ros::decode<msg::Header>(message.wire, message.bytes);
+    if (std::string other = of_other_camera(is_color ? color_ : depth_, header.frame_id); !other.empty()) {
+      if (is_color) skips_.add({SkipReason::kOtherCamera, std::move(other)});
+      return;
+    }
+    const std::int64_t stamp_ns = by_time_of_recording_ ? message.recorded_ns : msg::to_ns(header.stamp);
+    StampedMessage stamped{stamp_ns, std::move(message)};
     is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));
   } catch (const ros::WireError& error) {
     skips_.add({SkipReason::kDamagedRecord, name_of(message) + ": " + error.what()});

@@ -10,6 +10,7 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/recording/ros_images.hpp"
+#include "common/io/printable.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::camera {
@@ -29,6 +30,7 @@ constexpr std::int64_t kInfoNs = 1'000'000'000;       // for a CameraInfo of dep
 constexpr std::int64_t kAlignmentNs = 5'000'000'000;  // for what registers depth, once the images are there
 constexpr std::uint64_t kSteppedImages = 30;          // in a row with a stamp before that of the last frame
 constexpr std::uint64_t kRecalibratedImages = 30;     // in a row with another CameraInfo
+constexpr std::uint64_t kOtherImages = 30;            // in a row in another frame
 constexpr double kRecalibrated_px = 1;
 constexpr std::uint64_t kUnstamped = 3;  // one of two streams has two then, and no clock stands still
 
@@ -66,10 +68,26 @@ std::optional<DeviceImage> Ros2Device::take(RecordedMessage& message) {
 std::optional<DeviceImage> Ros2Device::take_image(RecordedMessage& message) {
   const bool is_color = message.topic == options_.topics.color;
   if (!is_color && message.topic != options_.topics.depth) return std::nullopt;
+  if (opened_ && is_of_other_camera(message)) return std::nullopt;
   const std::optional<std::int64_t> stamp_ns = stamp_of(message);
   if (!stamp_ns) return std::nullopt;
   if (is_color) note_color(*stamp_ns);
   return DeviceImage{is_color ? Stream::kColor : Stream::kDepth, *stamp_ns, std::move(message)};
+}
+
+/// In turn with its own: a second camera. Its own no more: the driver was started again with another name.
+bool Ros2Device::is_of_other_camera(const RecordedMessage& message) {
+  const bool is_color = message.topic == options_.topics.color;
+  const auto header = ros::decode<msg::Header>(message.wire, message.bytes);
+  std::string other = of_other_camera(is_color ? color_origin_ : depth_origin_, header.frame_id);
+  if (is_color && other.empty()) other_camera_ = 0;
+  if (!is_color || other.empty()) return !other.empty();
+  if (++other_camera_ >= kOtherImages)
+    throw DeviceError(DeviceProblem::kChanged,
+                      fmt::format("the images on {} are in frame '{}' now: the camera begins again with them",
+                                  options_.topics.color, io::abridged(header.frame_id)));
+  skipped_.push_back({SkipReason::kOtherCamera, std::move(other)});
+  return true;
 }
 
 /// A simulation may well begin at 0, and continues.
@@ -182,7 +200,7 @@ void Ros2Device::begin_again() {
   unregistered_.clear();
   lacking_.clear();
   remarks_.clear();
-  recalibrated_ = unstamped_ = stepped_ = 0;
+  recalibrated_ = unstamped_ = stepped_ = other_camera_ = 0;
   newest_color_ns_ = std::numeric_limits<std::int64_t>::min();
   if (newest_info_) take_calibration(msg::CameraInfo(*newest_info_));  // a latched one does not come again
   if (newest_depth_info_) take_depth_camera(msg::CameraInfo(*newest_depth_info_));
@@ -262,6 +280,7 @@ void Ros2Device::drop_waiting() {
   feed_->end_transforms();
   feed_->clear();
   dropped_ = feed_->dropped();
+  of_others_ = feed_->of_others();
   stepped_ = 0;
   opened_ = true;
 }
@@ -277,6 +296,9 @@ std::vector<SkippedInput> Ros2Device::take_skipped() {
   if (opened_) {
     for (const std::uint64_t now = feed_->dropped(); dropped_ < now; ++dropped_)
       skipped_.push_back({SkipReason::kOverrun, "messages came faster than they were taken"});
+    for (const std::uint64_t now = feed_->of_others(); of_others_ < now; ++of_others_)
+      skipped_.push_back(
+          {SkipReason::kOtherCamera, "two publishers send on " + options_.topics.color + ": the first is followed"});
   }
   return std::exchange(skipped_, {});
 }

@@ -32,8 +32,9 @@ class LiveFeed {
   virtual void clear() = 0;
   /// From now on transforms are left out: they can be many.
   virtual void end_transforms() {}
-  virtual std::uint64_t dropped() const = 0;  ///< messages that were not fetched in time
-  virtual std::int64_t now_ns() const = 0;    ///< clock of recorded_ns
+  virtual std::uint64_t dropped() const = 0;             ///< messages that were not fetched in time
+  virtual std::uint64_t of_others() const { return 0; }  ///< colour images of a second publisher: the first is followed
+  virtual std::int64_t now_ns() const = 0;               ///< clock of recorded_ns
   /// Who publishes a topic, for messages: "it has no publisher in DDS domain 0".
   virtual std::string state_of(const std::string& topic) const = 0;
   /// Whether a publisher of its type is known.
@@ -69,6 +70,7 @@ class Ros2Device final : public LiveDevice {
   void take_depth_camera(const msg::CameraInfo& info);
   void take_transforms(const RecordedMessage& message);
   void note_color(std::int64_t stamp_ns);
+  bool is_of_other_camera(const RecordedMessage& message);
   /// Empty while the stamps of the driver are 0 and it is not clear that they stay so.
   std::optional<std::int64_t> stamp_of(const RecordedMessage& message);
   void watch_calibration(const msg::CameraInfo& info);
@@ -102,7 +104,8 @@ class Ros2Device final : public LiveDevice {
   std::vector<std::string> remarks_;
   std::int64_t newest_color_ns_ = std::numeric_limits<std::int64_t>::min();
   std::uint64_t stepped_ = 0;  ///< colour images in a row that are older
-  std::uint64_t dropped_ = 0;
+  std::uint64_t dropped_ = 0, of_others_ = 0;
+  std::uint64_t other_camera_ = 0;  ///< colour images in a row that are in another frame
   std::vector<SkippedInput> skipped_;
 };
 

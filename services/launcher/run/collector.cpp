@@ -6,6 +6,7 @@
 #include <atomic>
 #include <utility>
 
+#include "common/camera/frame_source.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -42,17 +43,15 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
   const auto add_message = [this](const auto& message) { add(*message); };
   tracking_reader_ = bus.reader(bus::topics::kTracking, add_message, slam_->callbacks());
   features_reader_ = bus.reader(bus::topics::kFeatures, add_message, filter_->callbacks());
-  status_reader_ =
-      bus.reader(bus::topics::kStatus,
-                 [this](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
-                   add(*status, writer);
-                 });
+  status_reader_ = bus.reader(bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                                           const bus::WriterId& writer) { add(*status, writer); });
   if (with_masks_) masks_reader_ = bus.reader(bus::topics::kPersonMasks, add_message);
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
 void Collector::read_frames() {
-  frame_reader_ = bus::FrameReader(bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
+  frame_reader_ = bus::FrameReader(
+      bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
 }
 
 std::optional<double> Collector::metric_of(const std::string& service, const std::string& metric) const {
@@ -168,7 +167,9 @@ void Collector::close() {
 void Collector::fill(run_record::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);
-  const std::uint64_t met = record.frames_in + record.frames_left_out;
+  const auto repeated = record.left_out.find(camera::to_string(camera::SkipReason::kRepeated));
+  const std::uint64_t repeats = repeated == record.left_out.end() ? 0 : static_cast<std::uint64_t>(repeated->second);
+  const std::uint64_t met = record.frames_in + record.frames_left_out + repeats;
   record.frames_not_played = held_ - std::min(held_, met);
   record.samples = samples_.samples();
   record.judged_frames.clear();

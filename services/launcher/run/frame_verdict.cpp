@@ -39,6 +39,8 @@ std::vector<Cause> causes_of(const run_record::RunRecord& record) {
   return causes;
 }
 
+const char* const kOtherCamera = camera::to_string(camera::SkipReason::kOtherCamera);
+
 std::vector<std::string> deaths_on_the_way(const run_record::RunRecord& record) {
   return run_record::deaths(record, {"camera", "filter", "slam"});
 }
@@ -50,14 +52,19 @@ bool died_with_frames(const run_record::RunRecord& record) {
   return record.frames_dropped + record.frames_not_played > 0 && !deaths_on_the_way(record).empty();
 }
 
+bool is_partial(const run_record::RunRecord& record) {
+  return run_record::frame_use(record).too_few() || died_with_frames(record) || record.left_out.contains(kOtherCamera);
+}
+
 std::string why_not_used(const run_record::RunRecord& record, const std::string& first_left_out) {
   const run_record::FrameUse use = run_record::frame_use(record);
   if (died_with_frames(record))
     return fmt::format("only {} of {} frames were used: {}", use.used, use.given,
                        fmt::join(deaths_on_the_way(record), "; "));
-  if (10 * use.used >= 9 * use.given) return {};
   const std::vector<Cause> causes = causes_of(record);
-  const Cause most = *std::ranges::max_element(causes, {}, &Cause::frames);
+  const auto other = std::ranges::find(causes, kOtherCamera, &Cause::name);
+  if (other == causes.end() && 10 * use.used >= 9 * use.given) return {};
+  const Cause most = other == causes.end() ? *std::ranges::max_element(causes, {}, &Cause::frames) : *other;
   std::string text = fmt::format("only {} of {} frames were used; {:.0f} x {}: {}", use.used, use.given, most.frames,
                                  most.name, most.text);
   if (record.left_out.contains(most.name) && !first_left_out.empty())

@@ -151,9 +151,7 @@ RunResult run_prepared(const RunSetup& setup, const std::vector<ServicePlan>& pl
   end_trace(setup, terminal);
   run_record::RunRecord record = session.record();
   const std::string not_used = why_not_used(record, session.camera_message());
-  const bool partial =
-      run_record::frame_use(record).too_few() || died_with_frames(record) || session.slam_lost_its_world();
-  result.code = exit_code(outcome, session.tracked_any(), partial);
+  result.code = exit_code(outcome, session.tracked_any(), is_partial(record) || session.slam_lost_its_world());
   if (outcome == RunOutcome::kConfigError) return result;
   if (!not_used.empty()) record.events.push_back(not_used);
   if (session.slam_kept_its_world()) join_trajectory(record, setup.out_dir);

@@ -43,6 +43,9 @@ class Driver {
     thread_.join();
   }
 
+  /// The next colour image of another driver.
+  static std::vector<std::uint8_t> color_of_another() { return ros::encode<ros::Wire::kCdr>(image("rgb8", 3, 99)); }
+
  private:
   std::unique_ptr<bus::RawWriter> writer(const std::string& topic, const std::string& type, bool reliable) {
     bus::RawWriterOptions options;
@@ -86,7 +89,7 @@ class Driver {
   std::shared_ptr<bus::RawBus> bus_;
   const std::string depth_encoding_, depth_frame_;
   std::unique_ptr<bus::RawWriter> color_, depth_, unaligned_, info_, depth_info_;
-  inline static std::int64_t stamp_ns_ = 1'000'000'000;
+  inline static std::atomic<std::int64_t> stamp_ns_ = 1'000'000'000;
   std::atomic<bool> ended_{false};
   std::thread thread_;
 };
@@ -129,6 +132,32 @@ TEST_P(Ros2Camera, plays_a_driver_that_sends_best_effort) {
   EXPECT_EQ(frame->depth[5], 257);
   EXPECT_DOUBLE_EQ(frame->depth_scale_m, 0.001);
   EXPECT_DOUBLE_EQ(frame->intrinsics[0], 60);
+}
+
+TEST_P(Ros2Camera, follows_the_first_of_two_publishers_and_counts_what_the_other_sends) {
+  if (options_.vendor == "cyclonedds") GTEST_SKIP() << "within a process its samples do not name their writer";
+  auto running = start();
+  EXPECT_TRUE(said(msg::ServiceState::kStarting, "and neither has any image topic"))
+      << "our own preview of depth is no camera";
+  const Driver first(options_, true);
+  ASSERT_TRUE(frames_come());
+  const std::shared_ptr<bus::RawBus> second = bus::connect_raw(options_);
+  const auto writer = second->writer({"rt/cam/color/image_raw", "sensor_msgs::msg::dds_::Image_"}, {});
+  const auto counted = [](const auto& all) {
+    return std::ranges::any_of(all, [](const auto& status) {
+      return service::find_metric(*status, "left_out.other_camera").value_or(0) >= 3;
+    });
+  };
+  for (int i = 0; i < 300 && !counted(statuses_.all()); ++i) {
+    const std::vector<std::uint8_t> image = Driver::color_of_another();
+    writer->write(std::as_bytes(std::span(image)));
+    std::this_thread::sleep_for(20ms);
+  }
+  EXPECT_TRUE(counted(statuses_.all()));
+  EXPECT_TRUE(frames_come());
+  for (const auto& frame : frames_.all()) EXPECT_EQ(frame->color_bgr[100], 77);
+  stop_.request_stop();
+  EXPECT_EQ(running.get(), service::kOk);
 }
 
 TEST_P(Ros2Camera, waits_for_a_reliable_driver_survives_its_restart_and_stops_at_once) {

@@ -27,6 +27,12 @@ class EndToEndTest : public testing::Test {
     return all;
   }
   nlohmann::json report() { return nlohmann::json::parse(text_of(out_ + "/report.json")); }
+  /// Inputs as others have them; empty where they are not.
+  static std::string field2(const std::string& name) {
+    const char* const data = std::getenv("RTD_DATA_DIR");
+    const fs::path file = fs::path(data == nullptr ? "" : data) / "field2" / name;
+    return fs::exists(file) ? file.string() : "";
+  }
   bool wait_for_log(const std::string& service, const std::string& text) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (std::chrono::steady_clock::now() < give_up) {
@@ -119,6 +125,22 @@ TEST_F(EndToEndTest, a_recording_brings_its_imu_and_its_transforms) {
   const std::vector<std::string> motion = {"--detector", "off", "--imu", "/camera/imu", "--camera-in-base", "tf"};
   ASSERT_EQ(rtd_.run(arguments(58, "mcap:" + recording.string(), motion)), 0) << rtd_.output();
   EXPECT_EQ(report()["frames_tracked"], 6);
+}
+
+TEST_F(EndToEndTest, of_two_cameras_on_one_topic_one_is_followed_and_that_is_no_success) {
+  const std::string source = field2("two_cameras_one_topic/a.mcap");
+  if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no field2";
+  EXPECT_EQ(rtd_.run(arguments(58, source, {"--detector", "off"})), 3) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("only 10 of 20 frames were used; 10 x other_camera: two cameras send"),
+                                   HasSubstr("'front_color_optical_frame' and 'rear_color_optical_frame'")));
+}
+
+TEST_F(EndToEndTest, images_that_come_twice_count_once) {
+  const std::string source = field2("every_image_twice/a.mcap");
+  if (source.empty()) GTEST_SKIP() << "RTD_DATA_DIR has no field2";
+  EXPECT_EQ(rtd_.run(arguments(58, source, {"--detector", "off"})), 0) << rtd_.output();
+  EXPECT_THAT(rtd_.output(), HasSubstr("6 given, 6 used, 6 with pose  (repeated 6)"));
+  EXPECT_EQ(report()["coverage"], 1.0);
 }
 
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {

@@ -257,6 +257,31 @@ TEST(BagSource, knows_rational_and_fisheye_lenses) {
   EXPECT_EQ(to_camera_info(geometry::CameraModel(fisheye), 0).d.size(), 4U);
 }
 
+TEST(BagSource, of_two_cameras_on_one_topic_the_first_is_played_with_its_own_depth) {
+  ImageBag bag;
+  bag.add_info();
+  const auto add = [&bag](const std::string& topic, const cv::Mat& pixels, const char* encoding, const char* frame,
+                          double stamp_s) {
+    msg::Image image = ImageBag::image(pixels, encoding, stamp_s);
+    image.header.frame_id = frame;
+    bag.add(topic, "sensor_msgs/Image", image, stamp_s + 0.001);
+  };
+  add(ImageBag::kDepth, ImageBag::depth(4000), "16UC1", "/rear_optical", 0.99);
+  for (const double stamp_s : {1.0, 1.1, 1.2}) {
+    add(ImageBag::kColor, ImageBag::color(), "bgr8", "front_optical", stamp_s);
+    add(ImageBag::kDepth, ImageBag::depth(1500), "16UC1", "front_optical", stamp_s);
+    add(ImageBag::kColor, ImageBag::color(), "bgr8", "rear_optical", stamp_s + 0.005);
+    add(ImageBag::kDepth, ImageBag::depth(4000), "16UC1", "rear_optical", stamp_s + 0.005);
+  }
+  const Played played = play_all(bag.uri());
+  ASSERT_THAT(played.frames, SizeIs(3));
+  for (const SourceFrame& frame : played.frames) EXPECT_EQ(frame.image.depth.at<std::uint16_t>(3, 3), 1500);
+  ASSERT_THAT(played.skipped, SizeIs(3));
+  EXPECT_EQ(played.skipped[0].reason, SkipReason::kOtherCamera);
+  EXPECT_THAT(played.skipped[0].detail,
+              AllOf(HasSubstr("/camera/rgb/image_color"), HasSubstr("'front_optical'"), HasSubstr("'rear_optical'")));
+}
+
 TEST(BagSource, takes_a_calibration_of_its_own) {
   ImageBag bag;
   bag.add_color(1);

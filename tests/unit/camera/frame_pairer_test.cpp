@@ -90,5 +90,26 @@ TEST(FramePairer, gives_a_depth_image_once) {
   EXPECT_EQ(skips.counters().of(SkipReason::kNoDepthPartner), 1U);
 }
 
+TEST(FramePairer, the_same_image_once_more_is_no_loss_and_another_one_of_its_stamp_is) {
+  FramePairer pairer;
+  SkipLog skips;
+  const auto add = [&](std::uint8_t publisher_count, std::uint8_t pixel) {
+    StampedMessage image = at(kMs, 2 * kMs);
+    image.message.bytes = std::vector<std::uint8_t>(10'000, 7);
+    image.message.bytes[0] = publisher_count;
+    image.message.bytes[9000] = pixel;
+    for (std::size_t i = 5000; i < 5010; ++i) image.message.bytes[i] = pixel;
+    pairer.add_color(std::move(image), skips);
+  };
+  add(1, 7);
+  add(2, 7);
+  EXPECT_EQ(skips.counters().of(SkipReason::kRepeated), 1U);
+  EXPECT_EQ(skips.counters().frames_left_out(), 0U);
+  EXPECT_EQ(skips.why_none(), "");
+  add(3, 8);
+  EXPECT_EQ(skips.counters().of(SkipReason::kStampDoubled), 1U);
+  EXPECT_EQ(skips.counters().frames_left_out(), 1U);
+}
+
 }  // namespace
 }  // namespace rtd::camera

@@ -583,5 +583,49 @@ TEST_F(Ros2DeviceTest, what_came_while_it_opened_is_old) {
   EXPECT_TRUE(script_.messages.empty());
 }
 
+class SecondCamera : public Ros2DeviceTest {
+ protected:
+  void both_of(const char* frame, double stamp_s) {
+    for (const char* topic : {"/c", "/d"}) {
+      const bool color = std::string(topic) == "/c";
+      msg::Image image =
+          ImageBag::image(color ? ImageBag::color() : ImageBag::depth(), color ? "bgr8" : "16UC1", stamp_s);
+      image.header.frame_id = frame;
+      add(topic, "sensor_msgs/Image", image);
+    }
+  }
+};
+
+TEST_F(SecondCamera, on_the_same_topics_is_left_out_and_counted) {
+  info();
+  both_of("front", 1.0);
+  for (int i = 0; i < 40; ++i) {
+    both_of("front", 1.1 + 0.1 * i);
+    both_of("rear", 1.15 + 0.1 * i);
+  }
+  DeviceSource played = source();
+  ASSERT_TRUE(played.open());
+  std::size_t frames = 0;
+  while (const auto frame = played.next()) {
+    ++frames;
+    EXPECT_EQ((frame->image.stamp_ns + 1'000'000) / 10'000'000 % 10, 0) << "not of the rear camera";
+  }
+  EXPECT_EQ(frames, 40U);
+  EXPECT_EQ(played.counters().of(SkipReason::kOtherCamera), 40U);
+  EXPECT_THAT(played.take_skipped().front().detail, AllOf(HasSubstr("'front'"), HasSubstr("'rear'")));
+}
+
+TEST_F(SecondCamera, in_place_of_the_first_is_followed) {
+  info();
+  both_of("front", 1.0);
+  both_of("front", 1.1);
+  for (int i = 0; i < 40; ++i) both_of("driver_2", 1.2 + 0.1 * i);
+  DeviceSource played = source();
+  ASSERT_TRUE(played.open());
+  while (played.next()) continue;
+  EXPECT_GT(played.counters().frames, 8U);
+  EXPECT_THAT(reported_, testing::Contains(HasSubstr("in frame 'driver_2' now: the camera begins again")));
+}
+
 }  // namespace
 }  // namespace rtd::camera

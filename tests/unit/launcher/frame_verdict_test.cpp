@@ -61,6 +61,14 @@ TEST(WhyNotUsed, frames_that_a_service_took_with_it_are_its_fault_however_few) {
   EXPECT_FALSE(died_with_frames(record)) << "a frame needs no detector";
 }
 
+TEST(WhyNotUsed, a_second_camera_on_the_topic_is_named_however_few_its_images) {
+  run_record::RunRecord record = run_of(198, 2);
+  EXPECT_FALSE(is_partial(record));
+  record.left_out = {{"other_camera", 2}};
+  EXPECT_TRUE(is_partial(record));
+  EXPECT_THAT(why_not_used(record, ""), HasSubstr("2 x other_camera: two cameras send on one topic"));
+}
+
 TEST(WhyNotUsed, what_a_running_camera_did_not_give_while_it_was_dead_is_missing) {
   run_record::RunRecord record = run_of(200, 0);
   record.processes["camera"] = {.restarts = 1, .deaths = 1, .died = "died: exit code 1"};
