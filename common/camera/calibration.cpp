@@ -97,7 +97,8 @@ void require_keys(const std::map<std::string, double>& values, const std::string
   }
 }
 
-Calibration from_values(std::map<std::string, double> values, const std::string& origin) {
+Calibration from_values(std::map<std::string, double> values, const std::string& origin,
+                        LensModel lens = LensModel::kBrownConrady) {
   require_keys(values, origin);
   check_frame_size(values["width"], values["height"], origin);
   geometry::CameraModel::Parameters parameters;
@@ -105,6 +106,7 @@ Calibration from_values(std::map<std::string, double> values, const std::string&
   parameters.fy = values["fy"];
   parameters.cx = values["cx"];
   parameters.cy = values["cy"];
+  if (lens == LensModel::kFisheye) values["fisheye"] = 1;
   parameters.lens = values["fisheye"] != 0 ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
   const std::vector<std::string>& names = coefficient_names(parameters.lens);
   for (const std::string name : {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}) {
@@ -115,7 +117,7 @@ Calibration from_values(std::map<std::string, double> values, const std::string&
   parameters.width = static_cast<int>(values["width"]);
   parameters.height = static_cast<int>(values["height"]);
   Calibration calibration;
-  calibration.camera = geometry::CameraModel(parameters);
+  calibration.camera = geometry::CameraModel(with_lens(parameters, lens, origin));
   calibration.depth_factor_given = values.count("depth_factor") != 0;
   calibration.fps_given = values.count("fps") != 0;
   if (calibration.depth_factor_given) calibration.depth_scale_m = 1.0 / values["depth_factor"];
@@ -189,21 +191,21 @@ void check_frame_size(double width, double height, const std::string& origin) {
 }
 
 Calibration make_calibration(const std::map<std::string, double>& given, const std::string& origin,
-                             std::optional<cv::Size> image_px) {
+                             std::optional<cv::Size> image_px, LensModel lens) {
   std::map<std::string, double> values = given;
   const bool y_up = values.count("fy") != 0 && values["fy"] < 0;
   if (y_up) values["fy"] = -values["fy"];
   if (values.count("width") == 0 && image_px) values.insert({{"width", image_px->width}, {"height", image_px->height}});
   for (const auto& [key, value] : values)
     if (!in_range(key, value)) throw out_of_range(origin, key, fmt::format("{:g}", value));
-  Calibration calibration = from_values(std::move(values), origin);
+  Calibration calibration = from_values(std::move(values), origin, lens);
   calibration.y_up = y_up;
   return calibration;
 }
 
 Calibration parse_calibration(const std::string& text, const std::string& origin, std::optional<cv::Size> image_px) {
   if (const std::optional<CalibrationValues> other = read_calibration_form(text, origin))
-    return make_calibration(other->values, origin + " (" + other->form + ")", image_px);
+    return make_calibration(other->values, origin + " (" + other->form + ")", image_px, other->lens);
   std::map<std::string, double> values;
   for (const io::TextLine& line : io::split_lines(text)) {
     if (line.fields.front() == "---" || line.fields.front().front() == '%') continue;  // YAML document start, directive

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "common/camera/lens_models.hpp"
 #include "common/geometry/camera_model.hpp"
 
 namespace rtd::camera {
@@ -40,7 +41,7 @@ Calibration read_calibration(const std::filesystem::path& file, std::optional<cv
 /// The pinhole camera of these values; `origin` is for messages. A negative fy is taken for the positive one. Throws
 /// SourceError.
 Calibration make_calibration(const std::map<std::string, double>& values, const std::string& origin,
-                             std::optional<cv::Size> image_px);
+                             std::optional<cv::Size> image_px, LensModel lens = LensModel::kBrownConrady);
 
 struct SourceInfo;
 /// What the calibration says about a source; neither its rate nor anything else changes. A depth unit that is known

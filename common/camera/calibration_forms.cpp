@@ -33,25 +33,13 @@ void take(Values& values, const std::string& name, const SettingsText& text, con
   }
 }
 
-bool contains(const std::string& text, const Names& words) {
-  return std::ranges::any_of(words, [&](const std::string& word) { return text.find(word) != std::string::npos; });
-}
-
-/// By the name that a program gives its lens model.
-bool is_fisheye(const std::string& model, const std::string& origin) {
-  if (contains(model, {"KannalaBrandt", "equidistant", "fisheye", "FISHEYE"})) return true;
-  if (model == "ds" || contains(model, {"omni", "equirectangular", "fov", "FOV", "ucm"})) {
-    throw SourceError(origin + ": no lens model here fits '" + model +
-                      "'; known: pinhole with k1 k2 p1 p2 (k3 k4 k5 k6), fisheye (equidistant) with k1 k2 k3 k4; "
-                      "rectify the images, or calibrate with one of these");
-  }
-  return false;
-}
-
-void set_lens(Values& values, const std::string& model, const Numbers& coefficients, const std::string& origin) {
-  const bool fisheye = is_fisheye(model, origin);
-  if (fisheye) values["fisheye"] = 1;
-  set(values, fisheye ? kFisheye : kBrown, coefficients);
+/// Throws SourceError for a lens that no model here fits.
+void set_lens(CalibrationValues& found, const std::string& model, const Numbers& coefficients,
+              const std::string& origin) {
+  found.lens = lens_model(model);
+  if (found.lens == LensModel::kUnknown)
+    throw SourceError(origin + ": " + no_such_lens(model) + "; rectify the images, or calibrate with one of these");
+  set(found.values, found.lens == LensModel::kFisheye ? kFisheye : kBrown, coefficients);
 }
 
 /// 3 x 3 or 4 x 4, by rows; with zeros in the third column by columns, as Open3D writes it.
@@ -92,10 +80,9 @@ std::optional<CalibrationValues> read_orb_slam(const SettingsText& text, const s
        {"DepthMapFactor", "RGBD.DepthMapFactor", "depthmap_factor", "Preprocessing.depthmap_factor",
         "Camera.depthmap_factor"});
   if (found.values["depth_factor"] == 0) found.values.erase("depth_factor");
-  if (is_fisheye(text.text(text.has("Camera.model") ? "Camera.model" : "Camera.type"), origin)) {
-    found.values["fisheye"] = 1;
+  set_lens(found, text.text(text.has("Camera.model") ? "Camera.model" : "Camera.type"), {}, origin);
+  if (found.lens == LensModel::kFisheye)
     for (const char* const key : {"p1", "p2", "k5", "k6"}) found.values.erase(key);
-  }
   return found;
 }
 
@@ -110,7 +97,7 @@ std::optional<CalibrationValues> read_camera_info(const SettingsText& text, cons
     if (distortion.empty()) distortion = text.numbers(path);
   take(found.values, "width", text, {"image_width", "width", "image_Width"});
   take(found.values, "height", text, {"image_height", "height", "image_Height"});
-  set_lens(found.values, text.text("distortion_model"), distortion, origin);
+  set_lens(found, text.text("distortion_model"), distortion, origin);
   return found;
 }
 
@@ -120,11 +107,11 @@ std::optional<CalibrationValues> read_kalibr(const SettingsText& text, const std
   const Numbers intrinsics = text.numbers(camera + "intrinsics"), size = text.numbers(camera + "resolution");
   if (intrinsics.size() < 4 || size.size() != 2) return std::nullopt;
   CalibrationValues found{camera.empty() ? "EuRoC sensor" : "Kalibr camchain", {}};
-  is_fisheye(text.text(camera + "camera_model"), origin);
+  set_lens(found, text.text(camera + "camera_model"), {}, origin);
   set(found.values, {"fx", "fy", "cx", "cy"}, intrinsics);
   set(found.values, {"width", "height"}, size);
   const bool kalibr = text.has(camera + "distortion_coeffs");
-  set_lens(found.values, text.text(camera + "distortion_model"),
+  set_lens(found, text.text(camera + "distortion_model"),
            text.numbers(camera + (kalibr ? "distortion_coeffs" : "distortion_coefficients")), origin);
   take(found.values, "fps", text, {"rate_hz"});
   return found;
@@ -138,7 +125,7 @@ std::optional<CalibrationValues> read_openloris(const SettingsText& text, const 
   CalibrationValues found{"OpenLORIS sensors", {{"depth_factor", 1000}}};
   set(found.values, {"fx", "cx", "fy", "cy"}, intrinsics);
   for (const char* const key : {"width", "height", "fps"}) take(found.values, key, text, {camera + key});
-  set_lens(found.values, {}, text.numbers(camera + "distortion_coefficients.data"), origin);
+  set_lens(found, {}, text.numbers(camera + "distortion_coefficients.data"), origin);
   return found;
 }
 
@@ -167,8 +154,8 @@ std::optional<CalibrationValues> read_sens_info(const SettingsText& text, const 
   return found;
 }
 
-/// JSON of NeRF tools, Replica and others: fx fy cx cy under several names.
-std::optional<CalibrationValues> read_json(const SettingsText& text, const std::string& /*origin*/) {
+/// JSON of NeRF tools, RealSense, Replica and others: fx fy cx cy under several names.
+std::optional<CalibrationValues> read_json(const SettingsText& text, const std::string& origin) {
   CalibrationValues found{"JSON", {}};
   const auto take_any = [&](const std::string& name, const Names& names) {
     for (const std::string& other : names) take(found.values, name, text, {text.path_of(other)});
@@ -181,6 +168,16 @@ std::optional<CalibrationValues> read_json(const SettingsText& text, const std::
   take_any("width", {"width", "w"});
   take_any("height", {"height", "h"});
   for (const std::string& key : kBrown) take_any(key, {key});
+  std::string model;
+  for (const char* const name : {"camera_model", "distortion_model", "model"})  // the last may be that of a phone
+    if (const std::string named = text.text(text.path_of(name)); model.empty()) model = named;
+  if (text.path_of("camera_model").empty() && text.path_of("distortion_model").empty() &&
+      lens_model(model) == LensModel::kUnknown)
+    model.clear();
+  Numbers coefficients;
+  for (const char* const name : {"coeffs", "distortion_coefficients", "distortion_coeffs"})
+    if (coefficients.empty()) coefficients = text.numbers(text.path_of(name));
+  set_lens(found, model, coefficients, origin);
   take_any("fps", {"fps"});
   take_depth_scale(found.values, text,
                    {text.path_of("depth_scale"), text.path_of("scale"), text.path_of("png_depth_scale")});
@@ -190,7 +187,6 @@ std::optional<CalibrationValues> read_json(const SettingsText& text, const std::
 struct ColmapModel {
   const char* name;
   Names parameters;
-  const char* lens = "";
 };
 
 /// `CAMERA_ID MODEL WIDTH HEIGHT PARAMETERS...`, of several cameras the first.
@@ -202,7 +198,7 @@ std::optional<CalibrationValues> read_colmap(const std::string& text) {
       {"RADIAL", {"fx", "cx", "cy", "k1", "k2"}},
       {"OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2"}},
       {"FULL_OPENCV", {"fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"}},
-      {"OPENCV_FISHEYE", {"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"}, "fisheye"}};
+      {"OPENCV_FISHEYE", {"fx", "fy", "cx", "cy", "k1", "k2", "k3", "k4"}}};
   const std::vector<io::TextLine> lines = io::split_lines(text);
   if (lines.empty() || lines.front().fields.size() < 7) return std::nullopt;
   const std::vector<std::string>& fields = lines.front().fields;
@@ -215,7 +211,7 @@ std::optional<CalibrationValues> read_colmap(const std::string& text) {
   names.insert(names.end(), model->parameters.begin(), model->parameters.end());
   set(found.values, names, numbers);
   if (found.values.count("fy") == 0) found.values["fy"] = found.values["fx"];
-  if (*model->lens != '\0') found.values["fisheye"] = 1;
+  found.lens = lens_model(model->name);
   return found;
 }
 

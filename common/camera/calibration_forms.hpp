@@ -6,12 +6,15 @@
 #include <optional>
 #include <string>
 
+#include "common/camera/lens_models.hpp"
+
 namespace rtd::camera {
 
 /// What a calibration of another program says, in the keys of calibration.yaml; fy may be negative (ICL-NUIM).
 struct CalibrationValues {
   std::string form;  ///< "ORB-SLAM3 settings"
   std::map<std::string, double> values;
+  LensModel lens = LensModel::kBrownConrady;  ///< of k1 k2 ...
 };
 
 /// For messages.

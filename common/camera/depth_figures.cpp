@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -35,6 +36,8 @@ void DepthFigures::add(const cv::Mat& depth, double scale_m) {
       ++pixels_;
       pixels[column] == 0 ? ++holes_
                           : ++measured_[static_cast<std::size_t>(kBinsPerOctave * std::log2(pixels[column]))];
+      eighths_ += pixels[column] != 0 && pixels[column] % 8 == 0;
+      odd_eighths_ += pixels[column] % 16 == 8;
     }
   }
 }
@@ -67,6 +70,13 @@ std::string DepthFigures::doubt(bool given) const {
   const bool near = high_m < kTooNear_m || (!given && middle_m < kUsual_m);
   const bool far = low_m > kTooFar_m || (!given && middle_m > kFarIndoors_m);
   if (!near && !far) return {};
+  const bool eighths = static_cast<double>(eighths_) > kMostPixels * static_cast<double>(pixels_ - holes_);
+  if (eighths && 10 * odd_eighths_ > eighths_)
+    return fmt::format(
+        "most depth lies between {:.2g} and {:.2g} m with {:.6g} units per metre, and its low three bits "
+        "are 0: no unit makes that right. SUN3D's depth, rotated by three bits, is read without "
+        "?depth_factor=",
+        low_m, high_m, 1 / scale_m_);
   const auto likely = std::ranges::find_if(kUnits, fits);
   const bool sure = high_m < kTooNear_m || low_m > kTooFar_m;
   if (likely == kUnits.end() && !sure) return {};
@@ -75,6 +85,32 @@ std::string DepthFigures::doubt(bool given) const {
   if (likely == kUnits.end()) return text + "check the unit (?depth_factor=UNITS_PER_METRE)";
   return text + fmt::format("the unit is likely {}, median {:.2g} m then (?depth_factor={:g})", likely->name,
                             middle_m / (scale_m_ * likely->per_metre), likely->per_metre);
+}
+
+bool is_rotated(const cv::Mat& depth) {
+  constexpr double kMillimetre_m = 0.001;
+  std::vector<int> eighths;
+  int measured = 0;
+  for (int row = 0; row < depth.rows; row += 2) {
+    for (int column = 0; column < depth.cols; column += 2) {
+      const int value = depth.at<std::uint16_t>(row, column);
+      measured += value > 0;
+      if (value > 0 && value % 8 == 0) eighths.push_back(value / 8);
+    }
+  }
+  if (measured < 1000 || static_cast<double>(eighths.size()) < kMostPixels * measured) return false;
+  // Millimetres have both: whole steps of 16 would be another unit.
+  const auto even = std::ranges::count_if(eighths, [](int eighth) { return eighth % 2 == 0; });
+  DepthFigures figures;
+  figures.add(depth, kMillimetre_m);
+  return 10 * even < 9 * std::ssize(eighths) && figures.median_m().value_or(0) > kUsual_m * 8;
+}
+
+void rotate_back(cv::Mat& depth) {
+  for (int row = 0; row < depth.rows; ++row) {
+    auto* const pixels = depth.ptr<std::uint16_t>(row);
+    for (int column = 0; column < depth.cols; ++column) pixels[column] = std::rotr(pixels[column], 3);
+  }
 }
 
 double float_quantile(const cv::Mat& values, double share) {

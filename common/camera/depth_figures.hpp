@@ -32,9 +32,16 @@ class DepthFigures {
   static constexpr std::size_t kBins = 16 * 48 + 1;
 
   std::array<std::uint64_t, kBins> measured_{};  ///< by the logarithm of the units
+  std::uint64_t eighths_ = 0, odd_eighths_ = 0;  ///< measured multiples of 8, and those not of 16
   std::uint64_t pixels_ = 0, holes_ = 0;
   double scale_m_ = 0;
 };
+
+/// Whether 16-bit depth is rotated left by three bits, (d << 3) | (d >> 13), as SUN3D stores millimetres and Kinect's
+/// SDK leaves room for a player: the low three bits of nearly all values are 0, and as millimetres they would be far.
+bool is_rotated(const cv::Mat& depth);
+/// Undoes it.
+void rotate_back(cv::Mat& depth);
 
 /// The value below which this share of the positive, finite values lies; 0 without any. CV_32FC1.
 double float_quantile(const cv::Mat& values, double share);

@@ -246,6 +246,12 @@ void FolderSource::choose_depth_unit(const Calibration& calibration, const First
   info_.depth_unit_given = requested || calibration.depth_factor_given;
   std::string by = requested ? "?depth_factor=" : inside(contents_.folder, calibration.origin);
   if (requested) info_.depth_scale_m = 1 / *requested;
+  rotated_ = !requested && !first.depth.empty() && is_rotated(first.depth);
+  if (rotated_) {
+    info_.depth_scale_m = kMillimetre;
+    note("depth: millimetres, rotated by three bits as SUN3D stores them");
+    return;
+  }
   if (!info_.depth_unit_given) {
     const double usual = contents_.layout->depth_factor;
     by = usual > 0 ? std::string("the layout") : std::string("the images");
@@ -335,6 +341,7 @@ bool FolderSource::is_there() const {
 ImageRead FolderSource::read_depth_units(const std::string& file) const {
   ImageRead depth = read_depth(contents_.folder / file, contents_.below());
   if (depth.problem) return depth;
+  if (rotated_ && depth.image.type() == CV_16UC1) rotate_back(depth.image);
   if (depth.image.type() == CV_32FC1) {
     const double step = float_step_ > 0 ? float_step_ : kFloatDepthUnitM;
     depth.image = quantize_depth(depth.image, step);

@@ -62,8 +62,8 @@ class FolderSource final : public PlayedSource {
   FolderContents contents_;
   PairList list_;
   std::size_t next_pair_ = 0;
-  double float_step_ = 0;  ///< of depth in floats: what becomes a unit, in the unit of the floats
-  bool y_up_ = false;
+  double float_step_ = 0;                ///< of depth in floats: what becomes a unit, in the unit of the floats
+  bool y_up_ = false, rotated_ = false;  ///< rotated_: is_rotated()
   std::optional<vision::DepthRegistration> registration_;
   geometry::Trajectory groundtruth_;
 };

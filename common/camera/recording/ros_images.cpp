@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/recording/ros_images.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +13,7 @@
 
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
+#include "common/camera/lens_models.hpp"
 #include "common/camera/recording/color_encodings.hpp"
 #include "common/io/printable.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
@@ -209,22 +212,22 @@ constexpr const char* kFix = "; give a calibration of your own: ?calibration=FIL
 
 constexpr const char* kFisheyeModel = "equidistant";  // ROS's name
 
-void take_distortion(const msg::CameraInfo& info, const std::string& origin,
-                     geometry::CameraModel::Parameters& parameters) {
+/// Throws SourceError for a lens that no model here fits; one of zeros needs none, unless it is a fisheye lens.
+geometry::CameraModel::Parameters with_distortion(const msg::CameraInfo& info, const std::string& origin,
+                                                  geometry::CameraModel::Parameters parameters) {
   const auto is_zero = [](double value) { return value == 0; };
-  const bool fisheye = info.distortion_model == kFisheyeModel || info.distortion_model == "fisheye";
-  if (!fisheye && std::ranges::all_of(info.d, is_zero)) return;
-  const std::size_t known = std::min<std::size_t>(fisheye ? 4 : parameters.distortion.size(), info.d.size());
-  if (!std::ranges::all_of(std::span(info.d).subspan(known), is_zero)) {
-    throw SourceError(
-        origin + ": distortion model '" + io::abridged(info.distortion_model) + "' with " +
-        std::to_string(info.d.size()) +
-        " values; known: plumb_bob (k1 k2 p1 p2 k3), rational_polynomial (... k4 k5 k6), equidistant (k1 k2 "
-        "k3 k4)" +
-        kFix);
+  const LensModel model = lens_model(info.distortion_model);
+  if (model == LensModel::kNone || (model != LensModel::kFisheye && std::ranges::all_of(info.d, is_zero)))
+    return parameters;
+  const std::size_t most = model == LensModel::kFisheye ? 4 : parameters.distortion.size();
+  const std::size_t known = std::min(most, info.d.size());
+  if (model == LensModel::kUnknown || !std::ranges::all_of(std::span(info.d).subspan(known), is_zero)) {
+    throw SourceError(fmt::format("{}: distortion model '{}' with {} values: {}{}", origin,
+                                  io::abridged(info.distortion_model), info.d.size(),
+                                  no_such_lens(info.distortion_model), kFix));
   }
-  parameters.lens = fisheye ? geometry::Lens::kFisheye : geometry::Lens::kBrownConrady;
   std::copy_n(info.d.begin(), known, parameters.distortion.begin());
+  return with_lens(parameters, model, origin);
 }
 
 /// ROS's name of the distortion and the number of its coefficients.
@@ -321,7 +324,7 @@ geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::st
     p.fy = info.k[4];
     p.cx = info.k[2];
     p.cy = info.k[5];
-    take_distortion(info, origin, p);
+    p = with_distortion(info, origin, p);
   }
   const double sum = std::accumulate(p.distortion.begin(), p.distortion.end(), p.fx + p.fy + p.cx + p.cy);
   if (!(p.fx > 0) || !(p.fy > 0) || !std::isfinite(sum)) {

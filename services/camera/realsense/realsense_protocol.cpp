@@ -49,7 +49,6 @@ VideoStream::Profile parse_profile(const json& profile) {
   return {finite(profile.at(0)), profile.at(1).get<std::string>(), parse_size(profile.at(2), profile.at(3))};
 }
 
-/// Inverse and modified Brown-Conrady coefficients are used as plain ones, as the ROS driver of these cameras does.
 Intrinsics parse_intrinsics(const json& values) {
   Intrinsics intrinsics;
   intrinsics.size_px = parse_size(values.at("width"), values.at("height"));
@@ -58,12 +57,16 @@ Intrinsics parse_intrinsics(const json& values) {
   intrinsics.center_px = {finite(center.at(0)), finite(center.at(1))};
   intrinsics.symmetric = values.value("force-symmetry", false);
   if (intrinsics.focal_px.minCoeff() <= 0) throw ros::WireError("a focal length that is not positive");
-  if (!values.contains("coefficients") || values.value("model", "brown") == "none") return intrinsics;
+  const std::string model = values.value("model", "brown");
+  intrinsics.lens = lens_model(model);
+  if (!values.contains("coefficients") || intrinsics.lens == LensModel::kNone) return intrinsics;
   for (const json& coefficient : values.at("coefficients")) intrinsics.distortion.push_back(finite(coefficient));
-  constexpr std::size_t kBrownConrady = 5;
-  if (intrinsics.distortion.size() != kBrownConrady) {
+  constexpr std::size_t kCoefficients = 5;
+  if (intrinsics.distortion.size() != kCoefficients) {
     throw ros::WireError(std::to_string(intrinsics.distortion.size()) + " distortion coefficients, expected 5");
   }
+  const bool bent = std::ranges::any_of(intrinsics.distortion, [](double k) { return k != 0; });
+  if (intrinsics.lens == LensModel::kUnknown && bent) throw ros::WireError(no_such_lens(model));
   return intrinsics;
 }
 
@@ -167,7 +170,7 @@ geometry::CameraModel Intrinsics::at(cv::Size wanted_px) const {
   std::ranges::copy(distortion, camera.distortion.begin());
   camera.width = wanted_px.width;
   camera.height = wanted_px.height;
-  return geometry::CameraModel(camera);
+  return geometry::CameraModel(with_lens(camera, lens, "the camera"));
 }
 
 std::optional<geometry::CameraModel> VideoStream::camera(cv::Size size_px) const {

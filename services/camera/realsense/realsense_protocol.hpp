@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/lens_models.hpp"
 #include "common/geometry/camera_model.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 #include "services/camera/core/live/device_modes.hpp"
@@ -40,8 +41,9 @@ std::optional<DeviceInfo> parse_device_info(const nlohmann::json& message);
 struct Intrinsics {
   cv::Size size_px;
   Eigen::Vector2d focal_px, center_px;
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3, or none
-  bool symmetric = false;          ///< images are cropped so that the principal point is in their middle
+  std::vector<double> distortion;  ///< five of the lens, or none
+  LensModel lens = LensModel::kBrownConrady;
+  bool symmetric = false;  ///< images are cropped so that the principal point is in their middle
   /// Of the stream's images of this size: scaled by the larger of the two ratios, then cropped in the middle.
   geometry::CameraModel at(cv::Size size_px) const;
 };

@@ -78,5 +78,17 @@ TEST(DepthFigures, floats_beyond_a_hundred_are_millimetres) {
   EXPECT_FALSE(floats_are_millimetres(cv::Mat(48, 64, CV_32FC1, cv::Scalar(NAN))));
 }
 
+TEST(DepthFigures, of_rotated_bits_advise_no_unit) {
+  cv::Mat rotated = room(900, 3000) * 8;
+  const std::string doubted = doubt(rotated, kMillimetre_m, false);
+  EXPECT_THAT(doubted, AllOf(HasSubstr("SUN3D"), testing::Not(HasSubstr("depth_factor=5000"))));
+  EXPECT_TRUE(is_rotated(rotated));
+  rotate_back(rotated);
+  EXPECT_EQ(cv::countNonZero(rotated != room(900, 3000)), 0);
+  EXPECT_FALSE(is_rotated(rotated));
+  EXPECT_FALSE(is_rotated(room(5000, 20000))) << "TUM's units";
+  EXPECT_FALSE(is_rotated(cv::Mat(240, 320, CV_16UC1, cv::Scalar(16000)))) << "one value says nothing";
+}
+
 }  // namespace
 }  // namespace rtd::camera

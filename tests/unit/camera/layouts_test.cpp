@@ -3,6 +3,7 @@
 /// Datasets and capture scripts rebuilt small: names of files and forms of texts are theirs.
 #include <gmock/gmock.h>
 
+#include <bit>
 #include <cstdlib>
 
 #include "common/camera/folder/folder_source.hpp"
@@ -116,6 +117,26 @@ TEST(Layouts, redwood_has_microseconds_in_its_names_and_a_log_of_poses) {
   const auto frames = test::play(folder.uri());
   ASSERT_THAT(frames, SizeIs(3));
   EXPECT_EQ(frames[2].image.stamp_ns, 66'738'000);
+}
+
+TEST(Layouts, sun3d_has_redwoods_names_and_rotated_depth) {
+  const DataFolder folder("sun3d/hotel");
+  cv::Mat depth_mm(480, 640, CV_16UC1);
+  for (int row = 0; row < depth_mm.rows; ++row) depth_mm.row(row).setTo(cv::Scalar(600 + 17 * row));  // to 8743
+  cv::Mat stored(depth_mm.size(), CV_16UC1);
+  std::transform(depth_mm.begin<std::uint16_t>(), depth_mm.end<std::uint16_t>(), stored.begin<std::uint16_t>(),
+                 [](std::uint16_t mm) { return std::rotl(mm, 3); });
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = number(i + 1, 7) + "-" + number(33369 * i, 12);
+    folder.color("image/" + name + ".jpg", 640, 480);
+    folder.image("depth/" + name + ".png", stored);
+  }
+  const auto source = make_source(folder.uri());
+  EXPECT_THAT(notes_of(*source), HasSubstr("rotated by three bits as SUN3D"));
+  const auto frames = test::play(folder.uri());
+  ASSERT_THAT(frames, SizeIs(3));
+  EXPECT_DOUBLE_EQ(frames[0].image.depth_scale_m, 0.001);
+  EXPECT_EQ(cv::countNonZero(frames[0].image.depth != depth_mm), 0) << "also beyond 8.191 m";
 }
 
 TEST(Layouts, seven_scenes_has_a_pose_for_each_frame) {
