@@ -2,21 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/recordings/import.hpp"
 
-#include <zstd.h>
-
 #include <algorithm>
 #include <optional>
 
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/indexed_reader.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::recordings {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxDamages = 100;
-constexpr std::uint64_t kMaxMessageBytes = 256ULL << 20;
 
 /// Reports every thousandth message, and the end.
 class Steps {
@@ -62,19 +60,13 @@ mcap::ChannelId Import::channel(const mcap::Schema& schema, mcap::Channel channe
 }
 
 void Import::write(mcap::Message message, const std::string& topic) {
-  if (packed_messages_) {
-    const unsigned long long size = ZSTD_getFrameContentSize(message.data.data(), message.data.size());
-    const bool sensible = size != ZSTD_CONTENTSIZE_UNKNOWN && size != ZSTD_CONTENTSIZE_ERROR &&
-                          size <= kMaxMessageBytes && unpack_limit_.take(size);
-    unpacked_.resize(sensible ? size : 0);
-    const std::size_t result =
-        ZSTD_decompress(unpacked_.data(), unpacked_.size(), message.data.data(), message.data.size());
-    if (!sensible || ZSTD_isError(result) != 0 || result != size) {
-      if (damages_.size() < kMaxDamages) note("a message of " + topic + " cannot be unpacked (zstd); it is left out");
-      return;
-    }
-    message.data = unpacked_;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(message.data.data());
+  const auto unpacked = unpacked_message({bytes, message.data.size()});
+  if ((packed_messages_ && !unpacked) || (unpacked && !unpack_limit_.take(unpacked->size()))) {
+    if (damages_.size() < kMaxDamages) note("a message of " + topic + " cannot be unpacked (zstd); it is left out");
+    return;
   }
+  if (unpacked) message.data = std::as_bytes(std::span(*unpacked));
   writer_.write(message);
 }
 

@@ -47,7 +47,6 @@ class Import {
   std::map<Definition, mcap::SchemaId> schemas_;
   std::map<std::tuple<std::string, mcap::SchemaId, std::string, std::map<std::string, std::string>>, mcap::ChannelId>
       channels_;
-  mcap::Bytes unpacked_;
   io::UnpackLimit unpack_limit_{0};  ///< of the messages of one file
   std::vector<std::string> damages_;
 };

@@ -52,8 +52,9 @@ class PlacesReader : public IndexedReader {
     if (!stored) return std::nullopt;
     const StoredChannel& from = channels_.at(stored->channel);
     const ros::Wire wire = from.encoding == "ros1" ? ros::Wire::kRos1 : ros::Wire::kCdr;
-    return RecordedMessage{
-        from.topic, stored->recorded_ns, wire, {stored->bytes.begin(), stored->bytes.end()}, plain_type(from.type)};
+    auto unpacked = wire == ros::Wire::kCdr ? unpacked_message(stored->bytes) : std::nullopt;
+    if (!unpacked) unpacked.emplace(stored->bytes.begin(), stored->bytes.end());
+    return RecordedMessage{from.topic, stored->recorded_ns, wire, std::move(*unpacked), plain_type(from.type)};
   }
 
   std::vector<std::string> take_damages() final { return std::exchange(damages_, {}); }

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/recordings/reader.hpp"
 
+#include <zstd.h>
+
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
+#include "common/mcap/compression.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/indexed_reader.hpp"
@@ -56,7 +60,9 @@ class McapReader final : public Reader {
     const mcap::Channel& channel = playing_->channel();
     RecordedMessage recorded{channel.topic, static_cast<std::int64_t>(message->log_time), *wire_of(channel), {}};
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(message->data.data());
-    recorded.bytes.assign(bytes, bytes + message->data.size());
+    const ros::Bytes stored(bytes, message->data.size());
+    auto unpacked = recorded.wire == ros::Wire::kCdr ? unpacked_message(stored) : std::nullopt;
+    recorded.bytes = unpacked ? std::move(*unpacked) : std::vector<std::uint8_t>(stored.begin(), stored.end());
     const auto place = place_of_topic_.find(recorded.topic);
     if (place != place_of_topic_.end()) recorded.type = topics_[place->second].type;
     return recorded;
@@ -129,6 +135,18 @@ std::unique_ptr<Reader> open_reader(const std::filesystem::path& path) {
 std::optional<RecordedMessage> Reader::first(const std::string& topic) {
   play({topic});
   return next();
+}
+
+std::optional<std::vector<std::uint8_t>> unpacked_message(ros::Bytes bytes) {
+  constexpr std::array<std::uint8_t, 4> kMagic = {0x28, 0xB5, 0x2F, 0xFD};
+  constexpr std::uint64_t kMost = 256ULL << 20;
+  if (bytes.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return std::nullopt;
+  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());  // errors are the largest
+  if (size > std::min(kMost, mcap::largest_uncompressed_size(mcap::Compression::kZstd, bytes.size())))
+    return std::nullopt;
+  std::vector<std::uint8_t> unpacked(size);
+  if (ZSTD_decompress(unpacked.data(), size, bytes.data(), bytes.size()) != size) return std::nullopt;
+  return unpacked;
 }
 
 bool is_name(const std::string& text) {

@@ -40,6 +40,10 @@ struct RecordedMessage {
   std::string type = {};  ///< plain_type()
 };
 
+/// What the zstd frame holds that a message of rosbag2's MESSAGE mode, or of the RealSense SDK, is; empty for bytes
+/// that are none, or a damaged one. CDR never begins as zstd does.
+std::optional<std::vector<std::uint8_t>> unpacked_message(ros::Bytes bytes);
+
 /// A recording of any form: its topics, and their messages in the order of recording. Topics in another encoding than
 /// CDR and that of ROS 1 are left out. Damaged pieces are left out and reported by take_damages(). Not thread-safe.
 class Reader {

@@ -94,8 +94,9 @@ bool named_as_other_than_color(const std::string& topic) {
 
 std::string sdk_depth_unit_topic(const std::string& depth_topic) {
   constexpr std::string_view kData = "/Depth_0/image/data";
-  if (!depth_topic.starts_with("/device_") || !depth_topic.ends_with(kData)) return {};
-  return depth_topic.substr(0, depth_topic.size() - kData.size()) + "/option/Depth_Units/value";
+  const std::size_t data = depth_topic.find(kData);
+  if (!depth_topic.starts_with("/device_") || data == std::string::npos) return {};
+  return depth_topic.substr(0, data) + "/option/Depth_Units/value";
 }
 
 }  // namespace rtd::camera

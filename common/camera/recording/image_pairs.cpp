@@ -9,13 +9,12 @@
 #include "common/camera/calibration.hpp"
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/driver_topics.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
 #include "common/camera/recording/recording_source.hpp"
 #include "common/camera/recording/ros_images.hpp"
+#include "common/camera/recording/sdk_topics.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/io/text.hpp"
-#include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::camera {
@@ -25,50 +24,6 @@ double float_unit_of(const RecordedTopic& depth) {
   const auto factor = depth.metadata.find(kDepthFactor);
   const std::optional<double> value = factor == depth.metadata.end() ? std::nullopt : io::parse_number(factor->second);
   return value && *value >= 1 && *value <= 1e6 ? 1.0 / *value : kFloatDepthUnitM;
-}
-
-/// The unit of 16-bit depth that the RealSense SDK recorded beside it; empty when there is none. Throws SourceError.
-std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth) {
-  const std::string topic = sdk_depth_unit_topic(depth);
-  if (topic.empty() || topic_named(recording, topic) == nullptr) return std::nullopt;
-  constexpr float kMin_m = 1e-6F, kMax_m = 0.1F;
-  const RecordedMessage message = first_of(recording, topic);
-  ros::ByteCursor cursor(message.bytes);
-  if (message.wire == ros::Wire::kCdr) cursor.take(4);  // header
-  const auto unit_m = cursor.read<float>();
-  if (unit_m >= kMin_m && unit_m <= kMax_m) return static_cast<double>(unit_m);  // NaN compares false
-  throw SourceError(recording.name() + ", topic " + topic + ": the depth unit is " + std::to_string(unit_m) +
-                    " m, allowed is 0.000001 to 0.1; give another with depth_factor in ?calibration=FILE");
-}
-
-/// "/device_0/sensor_1/Color_0/image/data" -> "/device_0/sensor_1/Color_0/tf/"; empty for other topics.
-std::string sdk_transforms(const std::string& topic) {
-  constexpr const char* kData = "/image/data";
-  if (!topic.starts_with("/device_") || !topic.ends_with(kData)) return {};
-  return topic.substr(0, topic.rfind(kData)) + "/tf/";
-}
-
-std::optional<Eigen::Isometry3d> sdk_transform(recordings::Reader& recording, const std::string& topic) {
-  const RecordedTopic* const there = topic_named(recording, topic);
-  if (there == nullptr || there->type != "geometry_msgs/Transform") return std::nullopt;
-  const RecordedMessage message = first_of(recording, topic);
-  return geometry::to_isometry(ros::decode<msg::RosTransform>(message.wire, message.bytes));
-}
-
-/// The SDK records for each stream how points come from a reference stream (of the number at the end of the topic) into
-/// it: T_stream_reference.
-std::optional<Eigen::Isometry3d> sdk_extrinsics(recordings::Reader& recording, const ImageOrigin& color,
-                                                const ImageOrigin& depth) {
-  const std::string of_color = sdk_transforms(color.topic), of_depth = sdk_transforms(depth.topic);
-  if (of_color.empty() || of_depth.empty()) return std::nullopt;
-  for (const RecordedTopic& topic : recording.topics()) {
-    if (!topic.name.starts_with(of_depth)) continue;
-    const std::string reference = topic.name.substr(of_depth.size());
-    const auto T_depth_reference = sdk_transform(recording, topic.name);
-    const auto T_color_reference = sdk_transform(recording, of_color + reference);
-    if (T_depth_reference && T_color_reference) return *T_color_reference * T_depth_reference->inverse();
-  }
-  return std::nullopt;
 }
 
 std::optional<Eigen::Isometry3d> tf_extrinsics(recordings::Reader& recording, const std::vector<std::string>& topics,
@@ -93,7 +48,7 @@ std::optional<Eigen::Isometry3d> tf_extrinsics(recordings::Reader& recording, co
 std::optional<Eigen::Isometry3d> recorded_extrinsics(recordings::Reader& recording, const ImageOrigin& color,
                                                      const ImageOrigin& depth) {
   if (same_place(color, depth)) return Eigen::Isometry3d::Identity();
-  if (auto T_color_depth = sdk_extrinsics(recording, color, depth)) return T_color_depth;
+  if (auto T_color_depth = sdk_extrinsics(recording, color.topic, depth.topic)) return T_color_depth;
   if (!names_a_place(color.frame_id) || !names_a_place(depth.frame_id)) return std::nullopt;
   const std::vector<std::string> all = transform_topics(recording);
   std::vector<std::string> lasting = all;
@@ -195,10 +150,10 @@ void ImagePairs::look_at_first_images(const RecordingOptions& options) {
     by_time_of_recording_ = true;
     info_.remarks.push_back(no_stamps(topic, "the times of recording"));
   }
-  const auto sdk_unit_m = sdk_depth_unit_m(*recording_, topics_.depth);
+  const std::optional<double>& requested = options.calibration.depth_factor;
+  const auto sdk_unit_m = requested ? std::nullopt : sdk_depth_unit_m(*recording_, topics_.depth);
   info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_step_);
   floats_ = has_float_depth(depth);
-  const std::optional<double>& requested = options.calibration.depth_factor;
   take_floats_per_metre(requested ? *requested : float_step(depth, info_.depth_scale_m) / info_.depth_scale_m);
 }
 
@@ -228,8 +183,9 @@ std::optional<geometry::CameraModel> ImagePairs::recorded_camera(const std::stri
                                                                  const std::string& image_topic) {
   if (info_topic.empty()) return std::nullopt;
   const RecordedMessage message = first_of(*recording_, info_topic);
-  return to_camera_model(ros::decode<msg::CameraInfo>(message.wire, message.bytes), image_topic,
-                         recording_->name() + ", topic " + info_topic);
+  const msg::CameraInfo info =
+      is_sdk_text(message) ? sdk_camera_info(message) : ros::decode<msg::CameraInfo>(message.wire, message.bytes);
+  return to_camera_model(info, image_topic, recording_->name() + ", topic " + info_topic);
 }
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {

@@ -25,7 +25,8 @@ bool is_color(const RecordedTopic& topic) {
   return is_image(topic) && !named_as_other_than_color(topic.name);
 }
 bool is_info(const RecordedTopic& topic) {
-  return topic.type == "sensor_msgs/CameraInfo";
+  const bool of_sdk = topic.type == "std_msgs/String" && topic.name.starts_with("/device_");
+  return topic.type == "sensor_msgs/CameraInfo" || (of_sdk && topic.name.ends_with("/camera_info"));
 }
 
 SourceError error(const Reader& recording, const std::string& cause) {

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/recording/driver_topics.hpp"
 
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
+#include <zstd.h>
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "tests/unit/camera/image_bag.hpp"
+#include "tests/unit/camera/mcap_file.hpp"
+#include "tests/unit/camera/two_cameras.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -112,9 +116,64 @@ TEST(RealSenseSdkBag, a_unit_that_cannot_be_is_refused) {
     ImageBag bag;
     const std::string uri = sdk_bag(bag, unit_m);
     EXPECT_THAT([&] { make_source(uri); },
-                ThrowsMessage<SourceError>(AllOf(HasSubstr("Depth_Units"), HasSubstr("depth_factor"))));
+                ThrowsMessage<SourceError>(AllOf(HasSubstr("Depth_Units"), HasSubstr("?depth_factor="))));
+    EXPECT_DOUBLE_EQ(make_source(uri + "?depth_factor=1000")->info().depth_scale_m, 0.001) << "the advice helps";
   }
 }
+
+/// As the SDK records since 2026: what is not an image is a text.
+class RealSenseSdkTexts : public testing::TestWithParam<bool> {
+ protected:
+  /// `bytes`, or the zstd frame of them.
+  void add(const std::string& topic, const std::string& type, const std::vector<std::uint8_t>& bytes, double time_s) {
+    std::vector<std::uint8_t> stored = bytes;
+    if (GetParam()) {
+      stored.resize(ZSTD_compressBound(bytes.size()));
+      stored.resize(ZSTD_compress(stored.data(), stored.size(), bytes.data(), bytes.size(), 1));
+    }
+    file_.add(topic, type, "cdr", stored, time_s);
+  }
+  void text(const std::string& topic, const std::string& text) {
+    std::vector<std::uint8_t> bytes = {0, 1, 0, 0};
+    for (const std::size_t length = text.size() + 1; bytes.size() < 8;)
+      bytes.push_back(static_cast<std::uint8_t>(length >> (8 * (bytes.size() - 4))));
+    bytes.insert(bytes.end(), text.begin(), text.end());
+    bytes.push_back(0);
+    add(topic, "std_msgs/msg/String", bytes, 0.5);
+  }
+  void stream(const std::string& name, const geometry::CameraModel& camera, const Eigen::Isometry3d& T_stream_ref) {
+    const auto& p = camera.parameters();
+    text(name + "/camera_info",
+         fmt::format("width={};height={};fx={};ppx={};fy={};ppy={};model=Brown Conrady;coeffs={}", p.width, p.height,
+                     p.fx, p.cx, p.fy, p.cy, fmt::join(p.distortion.begin(), p.distortion.begin() + 5, ",")));
+    const Eigen::Matrix3d rotation = T_stream_ref.linear();
+    const Eigen::Vector3d t = T_stream_ref.translation();
+    text(name + "/tf/ref_0",
+         fmt::format("rotation={:.9f};translation={:.9f}", fmt::join(rotation.data(), rotation.data() + 9, ","),
+                     fmt::join(t.data(), t.data() + 3, ",")));
+  }
+
+  test::McapFile file_;
+};
+
+TEST_P(RealSenseSdkTexts, give_unit_intrinsics_and_extrinsics) {
+  const test::TwoCameras cameras;
+  const std::string color = "/device_0/sensor_1/Color_0", depth = "/device_0/sensor_0/Depth_0";
+  const Eigen::Isometry3d T_depth_ref =
+      Eigen::Isometry3d(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()));
+  stream(depth, cameras.depth, T_depth_ref);
+  stream(color, cameras.color, cameras.T_color_depth * T_depth_ref);
+  text("/device_0/sensor_0/option/Depth_Units/value", "0.001000");
+  text("/device_0/sensor_0/Depth_0/image/metadata", "Frame number=0;");
+  add(color + "/image/data", "sensor_msgs/msg/Image", ros::encode<ros::Wire::kCdr>(cameras.color_image(1)), 1);
+  add(depth + "/image/data", "sensor_msgs/msg/Image", ros::encode<ros::Wire::kCdr>(cameras.depth_image(1)), 1);
+  const auto source = make_source(file_.uri());
+  EXPECT_DOUBLE_EQ(source->info().depth_scale_m, 0.001);
+  EXPECT_DOUBLE_EQ(source->info().camera.parameters().distortion[1], -0.02);
+  cameras.expect_registered(source->next().value().image);
+}
+
+INSTANTIATE_TEST_SUITE_P(Packed, RealSenseSdkTexts, testing::Bool());
 
 }  // namespace
 }  // namespace rtd::camera

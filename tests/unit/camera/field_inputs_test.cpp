@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+// Inputs in the forms that other people have them, where RTD_DATA_DIR has them.
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "common/camera/frame_source.hpp"
+#include "common/camera/source_factory.hpp"
+#include "tests/unit/camera/played_frames.hpp"
+
+namespace rtd::camera {
+namespace {
+
+/// Frames are played, or words are in the refusal.
+struct FieldInput {
+  std::string path, parameters;
+  std::size_t frames = 0;
+  std::vector<std::string> words = {};
+};
+
+class FieldInputs : public testing::TestWithParam<FieldInput> {};
+
+TEST_P(FieldInputs, are_played_or_refused_with_help) {
+  const auto& [path, parameters, frames, words] = GetParam();
+  const char* const data = std::getenv("RTD_DATA_DIR");
+  const std::string input = std::string(data == nullptr ? "" : data) + "/field2/" + path;
+  if (!std::filesystem::exists(input)) GTEST_SKIP() << "RTD_DATA_DIR has no field2/" << path;
+  try {
+    EXPECT_EQ(test::play_all(complete_uri(input) + parameters).frames.size(), frames);
+  } catch (const SourceError& error) {
+    EXPECT_EQ(frames, 0U) << error.what();
+    for (const std::string& word : words) EXPECT_THAT(error.what(), testing::HasSubstr(word));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfOthers, FieldInputs,
+                         testing::Values(FieldInput{"message_mode_without_metadata/bag_0.db3", "", 6},
+                                         FieldInput{"message_mode_without_metadata/bag_0.mcap", "", 6},
+                                         FieldInput{"realsense_sdk_db3_compressed/rec.db3", "", 6},
+                                         FieldInput{"every_image_twice/a.mcap", "", 6},
+                                         FieldInput{"two_cameras_one_topic/a.mcap", "", 10}));
+
+}  // namespace
+}  // namespace rtd::camera
