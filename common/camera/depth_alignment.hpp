@@ -20,7 +20,9 @@ struct ImageOrigin {
 
 /// Why depth is not, or cannot be trusted to be, registered to colour; empty when it is. It is not when sizes or
 /// intrinsics differ by more than half a pixel. Otherwise it is when its topic has the name that drivers give to
-/// registered depth, or when both images are in one frame that has a name; in RealSense SDK bags all are in frame "0".
+/// registered depth, when both images are in one frame that has a name, or when the image is that of the left infrared
+/// camera (infra1), which RealSense computes depth for, with the same intrinsics; in RealSense SDK bags all are in
+/// frame "0".
 std::string why_unregistered(const ImageOrigin& color, const ImageOrigin& depth);
 
 /// Whether a frame id says where an image was taken: neither empty nor the "0" of RealSense SDK bags.

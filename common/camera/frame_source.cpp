@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/frame_source.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
@@ -29,8 +31,8 @@ constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
     {"stamp_doubled",
      "stamps are the same as those before: the driver does not fill header.stamp, or the list repeats them; give each "
      "frame a time of its own"},
-    {"color_unreadable", "colour images are missing, cut or no images: copy the files again"},
-    {"depth_unreadable", "depth images are missing, cut or no images: copy the files again"},
+    {"color_unreadable", "colour images are missing or cannot be decoded: the first one says why"},
+    {"depth_unreadable", "depth images are missing or cannot be decoded: the first one says why"},
     {"depth_not_16_bit", "depth images are not of 16 bits and one channel: write them so, 0 for no measurement"},
     {"size_mismatch",
      "the sizes of colour, depth and calibration differ: record in one mode of the camera, and give the calibration of "
@@ -148,9 +150,17 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
                                           const geometry::CameraModel& camera) {
   const cv::Size calibrated(camera.parameters().width, camera.parameters().height);
   if (color.size() == calibrated && depth.size() == calibrated) return std::nullopt;
+  std::string turned;
+  if (color.size() == depth.size() && color.size() == cv::Size(calibrated.height, calibrated.width)) {
+    const auto& p = camera.parameters();
+    turned = fmt::format(
+        ". The images are those of the calibration turned by 90 degrees: give that of the turned image, clockwise "
+        "?intrinsics={:.6g},{:.6g},{:.6g},{:.6g}, else {:.6g},{:.6g},{:.6g},{:.6g}",
+        p.fy, p.fx, p.height - 1 - p.cy, p.cx, p.fy, p.fx, p.cy, p.width - 1 - p.cx);
+  }
   return SkippedInput{SkipReason::kSizeMismatch, name + ": colour " + size_text(color.size()) + ", depth " +
                                                      size_text(depth.size()) + ", calibration " +
-                                                     size_text(calibrated) + " px differ"};
+                                                     size_text(calibrated) + " px differ" + turned};
 }
 
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info) {

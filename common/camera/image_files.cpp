@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/camera/depth_figures.hpp"
 #include "common/camera/folder/depth_formats.hpp"
 #include "common/io/input_file.hpp"
 #include "common/vision/image_codecs.hpp"
@@ -37,8 +38,8 @@ ImageRead refuse(SkipReason reason, const std::string& name, const std::string& 
 }
 
 ImageRead decode(Bytes bytes, const std::string& name, vision::PixelsAs pixels, SkipReason unreadable) {
-  if (bytes.empty()) return refuse(unreadable, name, "is empty");
-  if (!complete(bytes)) return refuse(unreadable, name, "is truncated");
+  if (bytes.empty()) return refuse(unreadable, name, "is empty: copy the file again");
+  if (!complete(bytes)) return refuse(unreadable, name, "is truncated: copy the file again");
   vision::DecodedImage decoded =
       vision::decode_image(bytes, {.pixels = pixels, .max_pixels = vision::DecodeRules::kMaxStreamPixels});
   if (!decoded.problem.empty()) return refuse(unreadable, name, decoded.problem);
@@ -60,8 +61,21 @@ ImageRead color_in(Bytes content, const std::string& name) {
   return {std::move(decoded.pixels), {}};
 }
 
+/// TartanAir V2 stores a float a pixel as four bytes of a PNG. Empty when they are none.
+cv::Mat floats_in(const cv::Mat& pixels) {
+  constexpr double kFarthest_m = 1e5;  // of the sky
+  if (pixels.type() != CV_8UC4) return {};
+  const cv::Mat values(pixels.size(), CV_32FC1, const_cast<std::uint8_t*>(pixels.data), pixels.step);
+  const double nearest = float_quantile(values, 0.1), farthest = float_quantile(values, 0.9);
+  return nearest > 1e-3 && farthest < kFarthest_m ? values.clone() : cv::Mat();
+}
+
 ImageRead depth_in(Bytes content, const std::string& name) {
   const bool known = vision::format_of(content) != vision::ImageFormat::kUnknown;
+  if (known) {
+    const ImageRead stored = decode(content, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
+    if (cv::Mat values = floats_in(stored.image); !values.empty()) return {std::move(values), {}};
+  }
   if (content.empty() || known) return decode_depth(content, name);
   vision::DecodedImage decoded = decode_depth_values(content);
   if (!decoded.problem.empty()) return refuse(SkipReason::kDepthUnreadable, name, decoded.problem);
@@ -97,9 +111,13 @@ ImageRead decode_depth(Bytes encoded, const std::string& name) {
   ImageRead result = decode(encoded, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
   if (result.problem) return result;
   if (result.image.type() != CV_16UC1) {
-    return refuse(
-        SkipReason::kDepthNot16Bit, name,
-        "depth is " + pixel_type_name(result.image) + ", needed is a 16-bit, 1-channel PNG (0 = no measurement)");
+    const bool painted = result.image.depth() == CV_8U && result.image.channels() > 1;
+    return refuse(SkipReason::kDepthNot16Bit, name,
+                  "depth is " + pixel_type_name(result.image) +
+                      ", needed is a 16-bit, 1-channel PNG (0 = no measurement)" +
+                      (painted ? "; colours are for people, and distances cannot be had back from them: export the "
+                                 "depth itself (of a RealSense recording: rs-convert -r, or give the recording)"
+                               : ""));
   }
   drop_saturated(result.image);
   return result;

@@ -21,43 +21,20 @@ namespace {
 using Parameters = geometry::CameraModel::Parameters;
 using Eigen::Vector2d;
 
-struct LensName {
-  std::string_view name;  ///< small letters and digits only
+struct LensNames {
   LensModel model;
+  std::string_view names;  ///< in small letters and digits only, a blank around each
 };
 
 constexpr std::array kLensNames = {
-    LensName{"", LensModel::kBrownConrady},
-    LensName{"plumbbob", LensModel::kBrownConrady},  // ROS
-    LensName{"rationalpolynomial", LensModel::kBrownConrady},
-    LensName{"rational", LensModel::kBrownConrady},
-    LensName{"rationalmodel", LensModel::kBrownConrady},
-    LensName{"brownconrady", LensModel::kBrownConrady},  // RealSense, Azure Kinect, Orbbec
-    LensName{"brownconradyk6", LensModel::kBrownConrady},
-    LensName{"brown", LensModel::kBrownConrady},
-    LensName{"radtan", LensModel::kBrownConrady},  // Kalibr
-    LensName{"radialtangential", LensModel::kBrownConrady},
-    LensName{"perspective", LensModel::kBrownConrady},  // stella_vslam
-    LensName{"pinhole", LensModel::kBrownConrady},      // ORB-SLAM, COLMAP
-    LensName{"rectified", LensModel::kBrownConrady},
-    LensName{"simplepinhole", LensModel::kBrownConrady},
-    LensName{"simpleradial", LensModel::kBrownConrady},
-    LensName{"radial", LensModel::kBrownConrady},
-    LensName{"opencv", LensModel::kBrownConrady},
-    LensName{"fullopencv", LensModel::kBrownConrady},
-    LensName{"modifiedbrownconrady", LensModel::kModified},  // RealSense
-    LensName{"modifiedbrown", LensModel::kModified},
-    LensName{"inversebrownconrady", LensModel::kInverse},
-    LensName{"inversebrown", LensModel::kInverse},
-    LensName{"kannalabrandt", LensModel::kFisheye},
-    LensName{"kannalabrandt4", LensModel::kFisheye},
-    LensName{"kannalabrandt8", LensModel::kFisheye},
-    LensName{"kb4", LensModel::kFisheye},
-    LensName{"equidistant", LensModel::kFisheye},
-    LensName{"equi", LensModel::kFisheye},
-    LensName{"fisheye", LensModel::kFisheye},
-    LensName{"opencvfisheye", LensModel::kFisheye},
-    LensName{"none", LensModel::kNone}};
+    LensNames{LensModel::kBrownConrady,
+              "  plumbbob rationalpolynomial rational rationalmodel brownconrady brownconradyk6 brown radtan "
+              "radialtangential perspective pinhole rectified simplepinhole simpleradial radial opencv fullopencv "},
+    LensNames{LensModel::kModified, " modifiedbrownconrady modifiedbrown "},
+    LensNames{LensModel::kInverse, " inversebrownconrady inversebrown "},
+    LensNames{LensModel::kFisheye,
+              " kannalabrandt kannalabrandt4 kannalabrandt8 kb4 equidistant equi fisheye opencvfisheye "},
+    LensNames{LensModel::kNone, " none "}};
 
 struct Bent {
   Vector2d ideal, raw;  ///< normalised
@@ -151,11 +128,13 @@ Parameters as_rational(const Parameters& camera, LensModel model, const std::str
 }  // namespace
 
 LensModel lens_model(const std::string& name) {
-  std::string bare;
+  std::string bare = " ";
   for (const char letter : name)
     if (std::isalnum(static_cast<unsigned char>(letter)) != 0)
       bare.push_back(static_cast<char>(std::tolower(static_cast<unsigned char>(letter))));
-  const auto* const found = std::ranges::find(kLensNames, bare, &LensName::name);
+  bare.push_back(' ');
+  const auto* const found = std::ranges::find_if(
+      kLensNames, [&](const LensNames& one) { return one.names.find(bare) != std::string_view::npos; });
   return found == kLensNames.end() ? LensModel::kUnknown : found->model;
 }
 

@@ -128,11 +128,18 @@ float half_to_float(std::uint16_t half) {
 std::vector<std::uint8_t> inflate_at_most(Bytes packed, std::size_t size) {
   constexpr std::size_t kMostPerByte = 1032;  // of deflate: runs of 258 bytes in two bits
   if (size / kMostPerByte > packed.size()) return {};
+  constexpr int kEitherHeader = 32 + MAX_WBITS;
   std::vector<std::uint8_t> bytes(size);
-  auto length = static_cast<uLongf>(size);
-  const int result = uncompress(bytes.data(), &length, packed.data(), static_cast<uLong>(packed.size()));
-  if (result != Z_OK && result != Z_BUF_ERROR) return {};
-  bytes.resize(length);
+  z_stream stream{};
+  stream.next_in = const_cast<Bytef*>(packed.data());
+  stream.avail_in = static_cast<uInt>(packed.size());
+  stream.next_out = bytes.data();
+  stream.avail_out = static_cast<uInt>(size);
+  if (inflateInit2(&stream, kEitherHeader) != Z_OK) return {};
+  const int result = inflate(&stream, Z_FINISH);
+  inflateEnd(&stream);
+  if (result != Z_STREAM_END && result != Z_BUF_ERROR) return {};
+  bytes.resize(stream.total_out);
   return bytes;
 }
 

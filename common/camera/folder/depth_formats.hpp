@@ -36,8 +36,8 @@ bool is_raster_size(std::int64_t width, std::int64_t height, std::int64_t times 
 /// IEEE 754 binary16.
 float half_to_float(std::uint16_t half);
 
-/// The `size` bytes that a zlib stream holds; fewer, or none: it is damaged. Takes no memory when the stream is too
-/// short to hold them.
+/// The `size` bytes that a zlib or gzip stream holds; fewer, or none: it is damaged. Takes no memory when the stream is
+/// too short to hold them.
 std::vector<std::uint8_t> inflate_at_most(std::span<const std::uint8_t> packed, std::size_t size);
 
 }  // namespace rtd::camera

@@ -68,6 +68,15 @@ std::string joined_words(std::span<const std::string> words) {
   return text;
 }
 
+/// Names of Windows: a backslash separates where there is no file of that name.
+std::string file_name(const fs::path& list, std::span<const std::string> words) {
+  std::string name = joined_words(words);
+  std::error_code none;
+  if (name.find('\\') != std::string::npos && !fs::exists(list.parent_path() / name, none))
+    std::ranges::replace(name, '\\', '/');
+  return name;
+}
+
 /// The columns of a list with commas between them, else the words of the line: names may have blanks.
 std::vector<std::string> columns_of(const io::TextLine& line) {
   if (line.fields[0].find(',') == std::string::npos) return line.fields;
@@ -83,7 +92,7 @@ std::vector<StampedFile> read_list(const fs::path& file, const ListRules& rules,
     const std::vector<std::string> columns = columns_of(line);
     const auto stamp_ns = columns.empty() ? std::nullopt : stamp_of(columns[0], at_line(file, line.number));
     if (stamp_ns && columns.size() > 1) {
-      entries.push_back({*stamp_ns, joined_words(std::span(columns).subspan(1))});
+      entries.push_back({*stamp_ns, file_name(file, std::span(columns).subspan(1))});
       if (!rules.outside) require_inside(entries.back(), at_line(file, line.number));
     } else {
       leave_out(skipped, file, line, "stamp file");
@@ -111,8 +120,8 @@ std::vector<FilePair> read_four_columns(const fs::path& file, const ListRules& r
     const auto first_ns = words.empty() ? std::nullopt : stamp_of(words[0], where);
     const auto second_ns = second + 1 < words.size() ? stamp_of(words[second], where) : std::nullopt;
     if (first_ns && second_ns) {
-      pairs.push_back(colour_first({{*first_ns, joined_words(words.subspan(1, second - 1))},
-                                    {*second_ns, joined_words(words.subspan(second + 1))}}));
+      pairs.push_back(colour_first({{*first_ns, file_name(file, words.subspan(1, second - 1))},
+                                    {*second_ns, file_name(file, words.subspan(second + 1))}}));
       for (const StampedFile& entry : {pairs.back().color, pairs.back().depth})
         if (!rules.outside) require_inside(entry, where);
     } else {

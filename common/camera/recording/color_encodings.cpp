@@ -31,6 +31,8 @@ constexpr std::array kEncodings = {ColorEncoding{"rgb8", CV_8UC3, cv::COLOR_RGB2
                                    ColorEncoding{"yuy2", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},
                                    ColorEncoding{"yuyv", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},
                                    ColorEncoding{"YUYV", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},  // RealSense SDK
+                                   ColorEncoding{"nv12", CV_8UC1, cv::COLOR_YUV2BGR_NV12},
+                                   ColorEncoding{"nv21", CV_8UC1, cv::COLOR_YUV2BGR_NV21},
                                    ColorEncoding{"bayer_rggb8", CV_8UC1, cv::COLOR_BayerRGGB2BGR},
                                    ColorEncoding{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerBGGR2BGR},
                                    ColorEncoding{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGBRG2BGR},
@@ -66,6 +68,7 @@ std::string known_color_encodings() {
 
 std::string size_defect(const ColorEncoding& encoding, cv::Size size_px) {
   constexpr int kBayer_px = 3;
+  if (encoding.rows(2) == 3 && (size_px.width % 2 != 0 || size_px.height % 3 != 0)) return "its sides must be even";
   if (CV_MAT_CN(encoding.type) == 2 && size_px.width % 2 != 0) return "its width must be even";
   if (!encoding.name.starts_with("bayer_") || (size_px.width >= kBayer_px && size_px.height >= kBayer_px)) return {};
   return "it needs 3 x 3 px";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
@@ -13,6 +14,8 @@ struct ColorEncoding {
   std::string_view name;
   int type;        ///< OpenCV's, of the pixels as they lie in the message
   int conversion;  ///< OpenCV's, of 8-bit pixels to BGR; negative when they are BGR
+  /// Rows of bytes of an image: colour in half the size lies below the grey of nv12 and nv21.
+  std::uint32_t rows(std::uint32_t height) const { return name.starts_with("nv") ? height + height / 2 : height; }
 };
 
 /// Null when it is not known. Names are those of sensor_msgs/image_encodings.hpp and those that drivers use beside

@@ -39,8 +39,8 @@ constexpr std::array kDrivers = {
     DriverNames{"/rgb/image_raw", "/depth/image_raw"},                             // Azure Kinect, not registered
     DriverNames{"/sensor_1/Color_0/image/data", "/sensor_0/Depth_0/image/data"}};  // RealSense SDK
 
-constexpr std::array<std::string_view, 2> kColorTransports = {"", "/compressed"};
-constexpr std::array<std::string_view, 2> kDepthTransports = {"", "/compressedDepth"};
+constexpr std::array<std::string_view, 3> kColorTransports = {"", "/compressed", "/zstd"};
+constexpr std::array<std::string_view, 3> kDepthTransports = {"", "/compressedDepth", "/zstd"};
 
 std::optional<std::string> camera_of(const std::string& topic, const std::string& ending) {
   if (!topic.ends_with(ending)) return std::nullopt;
@@ -90,6 +90,10 @@ bool named_as_depth(const std::string& topic) {
 
 bool named_as_other_than_color(const std::string& topic) {
   return named_as_depth(topic) || contains_any(topic, {"/ir", "infra", "mask"});
+}
+
+bool named_as_infrared(const std::string& topic) {
+  return !named_as_depth(topic) && contains_any(topic, {"/infra1/", "/infra/", "/ir/", "/infrared_1/", "/left_ir/"});
 }
 
 std::string sdk_depth_unit_topic(const std::string& depth_topic) {

@@ -25,6 +25,9 @@ bool named_as_depth(const std::string& topic);
 /// Whether the name is that of images without colour, of depth or of masks.
 bool named_as_other_than_color(const std::string& topic);
 
+/// Whether a driver gives this name to the left infrared camera of a stereo pair, or to the only one.
+bool named_as_infrared(const std::string& topic);
+
 /// The topic at which the RealSense SDK records the unit of a depth topic; empty for topics of others.
 std::string sdk_depth_unit_topic(const std::string& depth_topic);
 

@@ -94,7 +94,7 @@ class ImagePairs final : public RecordingSource {
   void load_calibration(const RecordingOptions& options);
   void load_recorded_camera();
   void take_floats_per_metre(double per_metre);
-  std::optional<geometry::CameraModel> recorded_camera(const std::string& info_topic, const std::string& image_topic);
+  std::optional<geometry::CameraModel> recorded_camera(const std::string& info_topic, const ImageOrigin& image);
   /// Sees to it that depth is registered to colour.
   void align_depth();
   void take(RecordedMessage message);
@@ -180,12 +180,12 @@ bool ImagePairs::lacks_stamps(const std::string& topic) {
 
 /// The camera of a CameraInfo; empty when the recording has none.
 std::optional<geometry::CameraModel> ImagePairs::recorded_camera(const std::string& info_topic,
-                                                                 const std::string& image_topic) {
+                                                                 const ImageOrigin& image) {
   if (info_topic.empty()) return std::nullopt;
   const RecordedMessage message = first_of(*recording_, info_topic);
   const msg::CameraInfo info =
       is_sdk_text(message) ? sdk_camera_info(message) : ros::decode<msg::CameraInfo>(message.wire, message.bytes);
-  return to_camera_model(info, image_topic, recording_->name() + ", topic " + info_topic);
+  return to_camera_model(info, image.topic, recording_->name() + ", topic " + info_topic, image.size_px);
 }
 
 void ImagePairs::load_calibration(const RecordingOptions& options) {
@@ -202,7 +202,7 @@ void ImagePairs::load_calibration(const RecordingOptions& options) {
 }
 
 void ImagePairs::load_recorded_camera() {
-  color_.camera = recorded_camera(topics_.info, topics_.color);
+  color_.camera = recorded_camera(topics_.info, color_);
   if (!color_.camera) {
     throw SourceError(
         recording_->name() + ": no sensor_msgs/CameraInfo beside " + topics_.color +
@@ -216,9 +216,9 @@ void ImagePairs::align_depth() {
   std::string missing = "there must be a sensor_msgs/CameraInfo beside " + topics_.depth +
                         "; if it is elsewhere, name it: ?depth_info=TOPIC";
   try {
-    depth_.camera = recorded_camera(topics_.depth_info, topics_.depth);
+    depth_.camera = recorded_camera(topics_.depth_info, depth_);
     // A calibration file says nothing of how the two images compare.
-    if (!color_.camera) color_.camera = recorded_camera(topics_.info, topics_.color);
+    if (!color_.camera) color_.camera = recorded_camera(topics_.info, color_);
   } catch (const SourceError& error) {
     missing = std::string("the cameras must be known, but ") + error.what();
   }

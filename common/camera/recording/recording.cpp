@@ -24,9 +24,16 @@ bool is_depth(const RecordedTopic& topic) {
 bool is_color(const RecordedTopic& topic) {
   return is_image(topic) && !named_as_other_than_color(topic.name);
 }
+bool is_infrared(const RecordedTopic& topic) {
+  return is_image(topic) && named_as_infrared(topic.name);
+}
 bool is_info(const RecordedTopic& topic) {
   const bool of_sdk = topic.type == "std_msgs/String" && topic.name.starts_with("/device_");
   return topic.type == "sensor_msgs/CameraInfo" || (of_sdk && topic.name.ends_with("/camera_info"));
+}
+
+bool is_video(const RecordedTopic& topic) {
+  return topic.type.ends_with("/FFMPEGPacket") || topic.type.ends_with("/CompressedVideo");
 }
 
 SourceError error(const Reader& recording, const std::string& cause) {
@@ -78,11 +85,22 @@ std::vector<std::string> image_candidates(const Reader& recording, const std::st
 std::string only(const Reader& recording, const std::string& key, const std::vector<std::string>& candidates) {
   if (candidates.size() == 1) return candidates.front();
   if (!candidates.empty()) throw several(recording, key, candidates);
+  if (const auto videos = fitting(recording, is_video); !videos.empty())
+    throw error(recording,
+                "has " + key + " only as video (" + videos.front().name + ", " + videos.front().type +
+                    "), and H.264 and H.265 are not read: decode it while it plays ('ros2 run image_transport "
+                    "republish ffmpeg raw', for foxglove_msgs with its own decoder), and record the images");
   throw error(recording, "has no " + key + " images that can be recognised by name; " + kNameThem);
 }
 
+/// In the dark there may be no colour: then the infrared camera that depth is computed for.
+std::vector<std::string> color_candidates(const Reader& recording, const std::string& named) {
+  auto color = image_candidates(recording, "color", named, is_color);
+  return color.empty() ? names_of(fitting(recording, is_infrared)) : color;
+}
+
 TopicPair choose_images(const Reader& recording, const ImageTopics& named) {
-  const auto color = image_candidates(recording, "color", named.color, is_color);
+  const auto color = color_candidates(recording, named.color);
   const auto depth = image_candidates(recording, "depth", named.depth, is_depth);
   const std::vector<TopicPair> known = driver_pairs(color, depth);
   if (known.size() == 1) return known.front();

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "common/camera/depth_figures.hpp"
+#include "common/camera/folder/depth_formats.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/lens_models.hpp"
 #include "common/camera/recording/color_encodings.hpp"
@@ -168,13 +169,13 @@ std::string remark_on(const RecordedMessage& message, const msg::Image& image, i
          std::to_string(row_bytes(image, type)) + ": rows without gaps are read";
 }
 
-ImageRead raw_color(const RecordedMessage& message) {
-  auto image = ros::decode<msg::Image>(message.wire, message.bytes);
+ImageRead raw_color(const RecordedMessage& message, msg::Image image) {
   const ColorEncoding* const encoding = find_color_encoding(image.encoding);
   if (encoding == nullptr) throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
   if (image.is_bigendian != 0 && CV_MAT_DEPTH(encoding->type) != CV_8U) {
     throw unsupported(message, image.encoding + ", big endian", "little endian");
   }
+  image.height = encoding->rows(image.height);
   const cv::Mat pixels = view_of(image, encoding->type);
   if (const std::string defect = size_defect(*encoding, pixels.size()); !defect.empty()) {
     throw ros::WireError("an image of " + size_text(pixels.size()) + " px in " + image.encoding + ": " + defect);
@@ -192,14 +193,53 @@ int depth_type(const RecordedMessage& message, const msg::Image& image) {
   return type->second;
 }
 
-ImageRead raw_depth(const RecordedMessage& message, double float_unit_m) {
-  auto image = ros::decode<msg::Image>(message.wire, message.bytes);
+ImageRead raw_depth(const RecordedMessage& message, msg::Image image, double float_unit_m) {
   const int type = depth_type(message, image);
   const cv::Mat pixels = view_of(image, type);
   ImageRead result{
       type == CV_32FC1 ? quantize_depth(pixels, float_unit_m) : pixels.clone(), {}, remark_on(message, image, type)};
   drop_saturated(result.image);
   return result;
+}
+
+/// From ROS's zstd_image_transport, which writes gzip: the fields of the raw image, then its pixels packed.
+msg::Image unpacked(const msg::CompressedImage& packed) {
+  ros::ByteCursor cursor(packed.data);
+  msg::Image image;
+  image.header = packed.header;
+  image.height = cursor.read<std::uint32_t>();
+  image.width = cursor.read<std::uint32_t>();
+  image.is_bigendian = cursor.read<std::uint8_t>();
+  image.step = cursor.read<std::uint32_t>();
+  const auto length = cursor.read<std::uint32_t>();
+  image.encoding = ros::to_text(cursor.take(length));
+  const std::uint64_t size = std::uint64_t{image.step} * image.height;
+  if (size > kMaxPixels * sizeof(float)) throw ros::WireError("zstd: an image of " + std::to_string(size) + " bytes");
+  const ros::Bytes pixels = cursor.take(cursor.remaining());
+  image.data = inflate_at_most(pixels, size);
+  if (image.data.size() != size) throw ros::WireError("zstd: the pixels are damaged");
+  return image;
+}
+
+/// nv12 and nv21 have half a row more for each, which other images must not.
+msg::Image plain_image(const RecordedMessage& message) {
+  try {
+    return ros::decode<msg::Image>(message.wire, message.bytes);
+  } catch (const ros::WireError&) {
+    msg::Image image;
+    message.wire == ros::Wire::kCdr ? ros::WireReader<ros::Wire::kCdr>(message.bytes)(image)
+                                    : ros::WireReader<ros::Wire::kRos1>(message.bytes)(image);
+    const std::uint64_t rows = std::uint64_t{image.step} * image.height;
+    if (!image.encoding.starts_with("nv") || 2 * image.data.size() != 3 * rows) throw;
+    return image;
+  }
+}
+
+/// The image of such a topic, or of a raw one; empty for JPEG, PNG and compressedDepth.
+std::optional<msg::Image> raw_image(const RecordedMessage& message) {
+  if (message.type != kCompressed) return plain_image(message);
+  if (!message.topic.ends_with("/zstd")) return std::nullopt;
+  return unpacked(ros::decode<msg::CompressedImage>(message.wire, message.bytes));
 }
 
 ImageRead compressed_depth(const RecordedMessage& message, double float_unit_m) {
@@ -245,7 +285,7 @@ std::string name_of(const RecordedMessage& message) {
 
 ImageRead decode_color(const RecordedMessage& message) {
   try {
-    if (message.type != kCompressed) return raw_color(message);
+    if (auto raw = raw_image(message)) return raw_color(message, std::move(*raw));
     const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
     return decode_color(image.data, name_of(message));
   } catch (const ros::WireError& error) {
@@ -255,7 +295,8 @@ ImageRead decode_color(const RecordedMessage& message) {
 
 ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) {
   try {
-    return message.type == kCompressed ? compressed_depth(message, float_unit_m) : raw_depth(message, float_unit_m);
+    if (auto raw = raw_image(message)) return raw_depth(message, std::move(*raw), float_unit_m);
+    return compressed_depth(message, float_unit_m);
   } catch (const ros::WireError& error) {
     return refuse(SkipReason::kDepthUnreadable, message, error.what());
   }
@@ -274,9 +315,9 @@ cv::Mat decode_rvl(ros::Bytes bytes) {
 }
 
 double depth_unit_m(const RecordedMessage& message, double float_unit_m) {
-  const bool floats = message.type == kCompressed
-                          ? ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1")
-                          : depth_type(message, ros::decode<msg::Image>(message.wire, message.bytes)) == CV_32FC1;
+  const std::optional<msg::Image> raw = raw_image(message);
+  const bool floats = raw ? depth_type(message, *raw) == CV_32FC1
+                          : ros::decode<msg::CompressedImage>(message.wire, message.bytes).format.starts_with("32FC1");
   return floats ? float_unit_m : kMillimetre;
 }
 
@@ -309,8 +350,29 @@ msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t
   return info;
 }
 
+/// CameraInfo is that of the whole sensor: of it the image shows a region, then with several pixels as one (REP 104).
+/// Some drivers give that of the image all the same.
+void crop_and_bin(const msg::CameraInfo& info, cv::Size image_px, geometry::CameraModel::Parameters& p) {
+  if (image_px == cv::Size(p.width, p.height)) return;
+  const auto& roi = info.roi;
+  if (roi.width > 0 && roi.height > 0 && roi.width <= info.width && roi.height <= info.height) {
+    p.cx -= roi.x_offset;
+    p.cy -= roi.y_offset;
+    p.width = static_cast<int>(roi.width);
+    p.height = static_cast<int>(roi.height);
+  }
+  const auto bin = [](std::uint32_t pixels, double& f, double& c, int& side) {
+    if (pixels < 2 || pixels > 16) return;
+    f /= pixels;
+    c /= pixels;
+    side /= static_cast<int>(pixels);
+  };
+  bin(info.binning_x, p.fx, p.cx, p.width);
+  bin(info.binning_y, p.fy, p.cy, p.height);
+}
+
 geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
-                                      const std::string& origin) {
+                                      const std::string& origin, cv::Size image_px) {
   geometry::CameraModel::Parameters p;
   p.width = static_cast<int>(info.width);
   p.height = static_cast<int>(info.height);
@@ -326,6 +388,7 @@ geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::st
     p.cy = info.k[5];
     p = with_distortion(info, origin, p);
   }
+  crop_and_bin(info, image_px, p);
   const double sum = std::accumulate(p.distortion.begin(), p.distortion.end(), p.fx + p.fy + p.cx + p.cy);
   if (!(p.fx > 0) || !(p.fy > 0) || !std::isfinite(sum)) {
     throw SourceError(origin + ": fx is " + std::to_string(p.fx) + ", fy " + std::to_string(p.fy) +

@@ -57,9 +57,10 @@ msg::CameraInfo to_camera_info(const geometry::CameraModel& camera, std::int64_t
                                const std::string& frame_id = kCameraFrame);
 
 /// The camera that a CameraInfo describes: K and D of the raw image, or P for a rectified one ("image_rect" in the
-/// colour topic's name). Throws SourceError naming `origin`: not calibrated, distortion model other than plumb_bob, not
+/// colour topic's name), of its region of interest and with its binning unless an image of `image_px` shows that it has
+/// them already. Throws SourceError naming `origin`: not calibrated, a lens that is not known (lens_models.hpp), not
 /// finite.
 geometry::CameraModel to_camera_model(const msg::CameraInfo& info, const std::string& color_topic,
-                                      const std::string& origin);
+                                      const std::string& origin, cv::Size image_px = {});
 
 }  // namespace rtd::camera

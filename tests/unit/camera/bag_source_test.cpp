@@ -170,9 +170,9 @@ TEST(BagSource, asks_which_when_several_topics_fit) {
 TEST(BagSource, names_an_encoding_that_cannot_be_read) {
   ImageBag planar;
   planar.add_info();
-  planar.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "nv21");
+  planar.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "nv24");
   planar.add_depth(1);
-  EXPECT_TRUE(refuses(planar.uri(), {"'nv21'", "rgb8, bgr8", "yuv422", "bayer_grbg16", "JPEG", ImageBag::kColor}));
+  EXPECT_TRUE(refuses(planar.uri(), {"'nv24'", "rgb8, bgr8", "yuv422", "bayer_grbg16", "JPEG", ImageBag::kColor}));
   ImageBag bag;
   bag.add_info();
   bag.add_color(1);
@@ -280,6 +280,42 @@ TEST(BagSource, of_two_cameras_on_one_topic_the_first_is_played_with_its_own_dep
   EXPECT_EQ(played.skipped[0].reason, SkipReason::kOtherCamera);
   EXPECT_THAT(played.skipped[0].detail,
               AllOf(HasSubstr("/camera/rgb/image_color"), HasSubstr("'front_optical'"), HasSubstr("'rear_optical'")));
+}
+
+TEST(BagSource, camera_info_of_the_whole_sensor_is_cropped_and_binned) {
+  const auto camera_of = [](std::uint32_t width, std::uint32_t height, std::uint32_t binning,
+                            msg::RegionOfInterest roi) {
+    msg::CameraInfo info = ImageBag::camera_info(60);
+    info.width = width;
+    info.height = height;
+    info.binning_x = info.binning_y = binning;
+    info.roi = roi;
+    ImageBag bag;
+    bag.add_info(info);
+    bag.add_color(1);
+    bag.add_depth(1);
+    return make_source(bag.uri())->info().camera.parameters();
+  };
+  const auto binned = camera_of(64, 48, 2, {});
+  EXPECT_EQ((std::array{binned.fx, binned.cx, binned.fy}), (std::array{30.0, 7.75, 15.5}));
+  const auto cropped = camera_of(64, 48, 0, {.x_offset = 10, .y_offset = 4, .height = 24, .width = 32});
+  EXPECT_EQ((std::array{cropped.fx, cropped.cx, cropped.cy}), (std::array{60.0, 5.5, 7.5}));
+  EXPECT_EQ(camera_of(32, 24, 2, {}).fx, 60) << "a driver that gives that of the image";
+}
+
+TEST(BagSource, the_left_infrared_camera_takes_the_place_of_colour) {
+  ImageBag bag;
+  for (const char* stream : {"/camera/camera/infra1", "/camera/camera/depth"}) {
+    const bool depth = std::string(stream).ends_with("depth");
+    msg::Image image = depth ? ImageBag::image(ImageBag::depth(), "16UC1", 1)
+                             : ImageBag::image(cv::Mat(24, 32, CV_8UC1, cv::Scalar(90)), "mono8", 1);
+    image.header.frame_id = depth ? "camera_depth_optical_frame" : "camera_infra1_optical_frame";
+    bag.add(std::string(stream) + "/camera_info", "sensor_msgs/CameraInfo", ImageBag::camera_info(), 0.5);
+    bag.add(std::string(stream) + "/image_rect_raw", "sensor_msgs/Image", image, 1);
+  }
+  const Played played = play_all(bag.uri());
+  ASSERT_THAT(played.frames, SizeIs(1));
+  EXPECT_EQ(played.frames[0].image.color_bgr.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
 }
 
 TEST(BagSource, takes_a_calibration_of_its_own) {

@@ -194,10 +194,10 @@ TEST_F(Ros2DeviceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
   refusal(
       [&] {
         info();
-        color(1, ImageBag::color(), "nv21");
+        color(1, ImageBag::color(), "nv24");
         depth(1);
       },
-      "'nv21'");
+      "'nv24'");
   refusal(
       [&] {
         info();
