@@ -23,7 +23,7 @@ using Eigen::Vector2d;
 
 struct LensNames {
   LensModel model;
-  std::string_view names;  ///< in small letters and digits only, a blank around each
+  std::string_view names;  ///< in small letters and digits only, a blank around each; no name is two blanks
 };
 
 constexpr std::array kLensNames = {

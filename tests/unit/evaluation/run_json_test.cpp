@@ -83,6 +83,8 @@ class RunJson : public testing::Test {
     run_.clocks = {{"detector", -3.25, 0.5}};
     run_.samples = {fabricated_sample(3), fabricated_sample(4)};
     run_.samples[1].masks = {16, 12, std::vector<std::uint8_t>(16 * 12, 1)};
+    run_.processes["filter"].deaths = 2;
+    run_.processes["filter"].died = "died: exit code 1";
     run_.frames_left_out = 7;
     run_.frames_not_played = 11;
     run_.left_out = {{"stamp_backwards", 5}, {"stamp_doubled", 2}};
@@ -113,6 +115,7 @@ TEST_F(RunJson, keeps_every_bit_that_the_report_needs) {
   const RunSummary before = summarize_run(run_), after = summarize_run(read);
   EXPECT_EQ(report_json(read, after).dump(), report_json(run_, before).dump());
   EXPECT_EQ(report_html(read, after), report_html(run_, before));
+  EXPECT_EQ(report_json(read, after)["deaths"][0], "filter died: exit code 1 (2 times)");
 }
 
 TEST_F(RunJson, keeps_the_features_and_whether_the_run_was_interrupted) {
