@@ -177,13 +177,11 @@ void Heartbeat::set_word(const std::string& prefix, const std::string& word) {
 
 /// Under the lock.
 void Heartbeat::set(const msg::Metric& metric) {
-  const auto found = std::find_if(own_.metrics.begin(), own_.metrics.end(),
-                                  [&](const msg::Metric& own) { return own.name == metric.name; });
-  if (found == own_.metrics.end()) {
+  const auto found = std::ranges::find(own_.metrics, metric.name, &msg::Metric::name);
+  if (found == own_.metrics.end())
     own_.metrics.push_back(metric);
-  } else {
+  else
     found->value = metric.value;
-  }
 }
 
 void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& writer) {
