@@ -56,4 +56,9 @@ std::string user_data_of(const std::string& dds_type);
 /// The hash in the USER_DATA of an endpoint, or empty.
 std::string hash_in(const std::string& user_data);
 
+/// The fields of `struct_name` ("RgbdFrame_") in a text of the OMG's IDL, and those of the types that it is made of,
+/// without comments and white space: two texts give the same when samples have the same bytes. Empty when the text does
+/// not define it.
+std::string layout_in(const std::string& idl, const std::string& struct_name);
+
 }  // namespace rtd::ros2

@@ -19,7 +19,6 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/live_camera.hpp"
-#include "services/camera/source_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -44,13 +43,6 @@ std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus:
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
-}
-
-std::optional<ResumePoint> resume_point_of(const ServiceConfig& config) {
-  const std::optional<ResumePoint> point = parse_resume_point(config.resume_after);
-  if (!point && !config.resume_after.empty())
-    throw service::ConfigError("camera.resume_after: '" + config.resume_after + "' is not SEQ,STAMP_NS,PUBLISHED_NS");
-  return point;
 }
 
 service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
@@ -149,7 +141,7 @@ CameraService::Outcome CameraService::open() {
     return fail(fmt::format("source {}: {}", config_.source, error.what()));
   }
   if (source_->info().live) open_publisher();
-  log_opened(source_->info());
+  log_opened();
   return Outcome::kDone;
 }
 
@@ -237,7 +229,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     if (!item) break;
     counters_ = item->counters;
     left_out_.add(*item);
-    log_skipped(*item, skip_log_);
+    log_skipped(*item);
     if (!item->error.empty()) return fail("the source failed: " + item->error);
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
@@ -260,7 +252,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     take_results();
     const service::PaceDecision decision =
         one_by_one_ && !realtime_ ? pacer_.drain() : pacer_.next(frame.image.stamp_ns, frames.waiting());
-    log_timeline(decision, frame.image.seq, config_.max_gap_s);
+    log_timeline(decision, frame.image.seq);
     if (decision.action == service::PaceAction::kSkipLate && late_log_.pass())
       SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
     if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);

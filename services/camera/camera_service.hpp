@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/camera/depth_figures.hpp"
-#include "common/camera/depth_offsets.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -23,7 +22,6 @@
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/left_out.hpp"
 #include "services/camera/core/read_ahead.hpp"
-#include "services/camera/core/resume_point.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {
@@ -122,6 +120,11 @@ class CameraService {
   void send(const vision::RgbdImage& image);
   void send_truth(const SourceFrame& frame);
   void resend();
+  void log_opened() const;
+  /// What the source left out.
+  void log_skipped(const ReadItem& item);
+  /// Pauses that were cut, and a source slower than its stamps.
+  void log_timeline(const service::PaceDecision& decision, std::uint64_t frame) const;
   void note_depth_offset(const SourceFrame& frame);
   void note_depth(const SourceFrame& frame);
   void report_counters();
@@ -142,6 +145,12 @@ class CameraService {
   bus::Writer<msg::PoseStamped> truth_;
   std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
   std::optional<BesidePublisher> beside_;  ///< of a recording that has them
+  /// The last frame that an earlier process of the camera gave: this one continues behind it.
+  struct ResumePoint {
+    std::uint64_t seq = 0;
+    std::int64_t stamp_ns = 0, published_ns = 0;  ///< published_ns: CLOCK_MONOTONIC
+  };
+  static std::optional<ResumePoint> resume_point_of(const Config& config);
   const std::optional<ResumePoint> resume_;
   const std::shared_ptr<bus::SourceGate> slam_;
   bus::Reader<msg::TrackingResult> tracking_;

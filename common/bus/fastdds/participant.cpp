@@ -67,7 +67,7 @@ void configure_library_once() {
 }
 
 /// Fast DDS makes a participant that discovers by announcements one that asks the server of this variable, whatever
-/// its QoS say: what is not followed (common/service/dds_environment.hpp) must not come in here.
+/// its QoS say: what is not followed (common/service/bus_config.hpp) must not come in here.
 class WithoutServerOfEnvironment {
  public:
   WithoutServerOfEnvironment() {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::slam {
 

@@ -14,10 +14,8 @@
 #include "services/slam/core/map/map_changes.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
-#include "services/slam/core/tracking/depth_weight.hpp"
 #include "services/slam/core/tracking/disagreement.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
-#include "services/slam/core/tracking/settling.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {

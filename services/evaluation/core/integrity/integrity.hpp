@@ -2,17 +2,43 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <vector>
 
+#include "common/geometry/se3.hpp"
+#include "common/geometry/trajectory.hpp"
 #include "common/msg/tracking.hpp"
-#include "services/evaluation/core/integrity/published_pose.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {
+
+/// What was published of one frame, at the time: later corrections of the map do not count.
+struct PublishedPose {
+  std::int64_t stamp_ns = 0;
+  msg::TrackingState state = msg::TrackingState::kInitializing;
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< where msg::has_pose(state)
+  std::optional<geometry::Matrix6d> covariance;  ///< (x y z rx ry rz), m and rad, world frame; none: not known
+  std::uint32_t map_id = 0;                      ///< poses of different maps are not compared
+};
+
+/// A covariance of zeros, as in run.json, or of a pose that slam calls unknown, is none. A pose that is none, or a
+/// state that this version does not know, makes the frame a lost one.
+PublishedPose published_pose(const msg::TrackingResult& result);
+
+/// The poses measured in the first map; those whose stamps do not increase are left out.
+geometry::Trajectory measured_poses(const std::vector<PublishedPose>& published);
+
+/// Normalised estimation error squared of a pose with 6 degrees of freedom, by the covariance that it came with (x y z
+/// rx ry rz, m and rad, world frame): 6 in the mean if that is true. docs/theory/tracking.md Eq. (4).
+inline double nees(const Eigen::Isometry3d& T_world_camera, const geometry::Matrix6d& covariance,
+                   const Eigen::Isometry3d& T_world_camera_true) {
+  const geometry::Vector6d error = geometry::pose_difference(T_world_camera_true, T_world_camera);
+  return error.dot(covariance.ldlt().solve(error));
+}
 
 inline constexpr std::size_t kTrackingStates =
     static_cast<std::size_t>(msg::last_value(msg::TypeOf<msg::TrackingState>{})) + 1;

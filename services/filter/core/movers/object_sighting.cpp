@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/vision/samples.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -8,7 +8,6 @@
 
 #include "common/msg/features.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/tracking/settling.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/slam/core/corrections.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "tests/support/feature_world.hpp"
 
