@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #include "common/bus/vendors.hpp"

@@ -11,7 +11,7 @@
 
 #include "common/bus/command_codec.hpp"
 #include "common/bus/commands.hpp"
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/robot.hpp"
 #include "common/io/text.hpp"

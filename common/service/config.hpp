@@ -66,6 +66,8 @@ class ConfigBinder {
     /// It is an option of the command line, too. `flags`: "--map", or several such as "-r,--rate"; without dashes it is
     /// the argument without a name. `group`: under which `rtd run --help` lists it.
     void option(std::string_view flags, std::string_view group = "");
+    /// The full key that it had in the last version, which is still read.
+    Bound formerly(std::string_view key);
 
    private:
     Setting& setting_;

@@ -21,8 +21,8 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host/host_checks.hpp"
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/log.hpp"

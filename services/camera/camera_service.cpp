@@ -98,7 +98,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                     MotionFrames{runtime.bus.frame(msg::kCameraFrame), runtime.bus.frame("wheel_odom"),
                                  runtime.bus.frame("base_link")});
   }
-  if (!config_.beside.empty()) open_beside();
+  if (!config_.sensor_topics.empty()) open_auxiliary();
   if (!source_->info().live) open_publisher();
   const auto none = std::find(config_.wait_for.rbegin(), config_.wait_for.rend(), "none");  // empties the list
   config_.wait_for.erase(config_.wait_for.begin(), none.base());
@@ -110,11 +110,11 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
   });
 }
 
-void CameraService::open_beside() {
+void CameraService::open_auxiliary() {
   try {
-    beside_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.beside);
+    auxiliary_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.sensor_topics);
   } catch (const SourceError& error) {
-    throw service::ConfigError(std::string("camera.beside: ") + error.what());
+    throw service::ConfigError(std::string("camera.sensor_topics: ") + error.what());
   }
 }
 
@@ -155,7 +155,7 @@ void CameraService::open_publisher() {
 void CameraService::report_wait(const std::string& what) {
   if (what.empty()) {
     if (playing_) runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
-    SPDLOG_INFO("event=camera_gives_frames");
+    SPDLOG_INFO("event=camera_streaming");
     return;
   }
   runtime_.heartbeat.set_state(playing_ ? msg::ServiceState::kDegraded : msg::ServiceState::kStarting, what);
@@ -211,7 +211,7 @@ void CameraService::resume() {
     source_->pass_over(resume_->stamp_ns + 1);
     passed_ = source_->counters();
     left_out_.resume(frames_in_, passed_);
-    if (beside_) beside_->pass_over(resume_->stamp_ns);
+    if (auxiliary_) auxiliary_->pass_over(resume_->stamp_ns);
   }
   if (realtime_ && !source_->info().live) {
     const std::int64_t due_ns = resume_->stamp_ns + service::monotonic_ns() - resume_->published_ns;
@@ -261,7 +261,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
       if (motion_) motion_->publish(frame, resume_ ? resume_->stamp_ns : std::numeric_limits<std::int64_t>::min());
-      if (beside_) beside_->publish(frame);
+      if (auxiliary_) auxiliary_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/camera/synthetic/deterministic_math.hpp"
 #include "common/camera/synthetic/geometry.hpp"
-#include "common/camera/synthetic/same_math.hpp"
 #include "common/camera/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {

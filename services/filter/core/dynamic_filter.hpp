@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "services/filter/core/boxes/object_tracker.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/movers/world_movers.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"

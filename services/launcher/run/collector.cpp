@@ -35,24 +35,22 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       keep_features_(options.keep_features),
       with_masks_(options.masks) {
   if (options.secured) {
-    peers_.believe_only("camera", camera_);
-    peers_.believe_only("filter", filter_);
-    peers_.believe_only("slam", slam_);
+    peers_.accept_only_from("camera", camera_);
+    peers_.accept_only_from("filter", filter_);
+    peers_.accept_only_from("slam", slam_);
   }
   const auto add_message = [this](const auto& message) { add(*message); };
   tracking_reader_ = bus.reader(bus::topics::kTracking, add_message, slam_->callbacks());
   features_reader_ = bus.reader(bus::topics::kFeatures, add_message, filter_->callbacks());
-  status_reader_ =
-      bus.reader(bus::topics::kStatus,
-                 [this](const std::shared_ptr<const msg::ServiceStatus>& status, const bus::WriterId& writer) {
-                   add(*status, writer);
-                 });
+  status_reader_ = bus.reader(bus::topics::kStatus, [this](const std::shared_ptr<const msg::ServiceStatus>& status,
+                                                           const bus::WriterId& writer) { add(*status, writer); });
   if (with_masks_) masks_reader_ = bus.reader(bus::topics::kPersonMasks, add_message);
   encoder_ = std::thread([this] { encode_samples(); });  // last: the bus may refuse a reader
 }
 
 void Collector::read_frames() {
-  frame_reader_ = bus::FrameReader(bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
+  frame_reader_ = bus::FrameReader(
+      bus_, [this](const auto& frame) { add_image(frame); }, camera_->callbacks());
 }
 
 std::optional<double> Collector::metric_of(const std::string& service, const std::string& metric) const {

@@ -14,7 +14,7 @@
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/process/frame_file.hpp"
 #include "services/launcher/process/service_logs.hpp"
-#include "services/launcher/process/usage_book.hpp"
+#include "services/launcher/process/usage_registry.hpp"
 #include "services/launcher/run/collector.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -59,7 +59,7 @@ class RunSession {
   service::InterruptSignals& signals_;
   Terminal& terminal_;
   ServiceLogs logs_;
-  UsageBook usage_;
+  UsageRegistry usage_;
   FrameFile frames_;
   Collector collector_;
   process::PosixProcessHost host_;
@@ -68,7 +68,7 @@ class RunSession {
   Milliseconds started_{}, next_sample_{};
   double own_cpu_before_s_ = 0;
   std::vector<std::string> awaited_;  ///< services that the source waits for
-  std::string viewer_line_;  ///< its addresses, as it printed them
+  std::string viewer_line_;           ///< its addresses, as it printed them
   bool page_was_open_ = false, wait_shown_ = false;
   int slam_restarts_ = 0, slam_worlds_lost_ = 0;
 };

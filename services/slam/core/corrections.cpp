@@ -70,8 +70,8 @@ std::vector<KeyframeChange> KeyframeChangeQueue::take(std::size_t count) {
   return changes;
 }
 
-void UnsettledFrames::add(const TrackedFrame& tracked, const LocalMap& map, const TrackingContext& context,
-                          std::vector<FrameRecord>& frames) {
+void DeferredFrames::add(const TrackedFrame& tracked, const LocalMap& map, const TrackingContext& context,
+                         std::vector<FrameRecord>& frames) {
   constexpr std::int64_t kSettledNs = 300'000'000;
   constexpr std::size_t kMost = 60;  // frames are in question for half a second
   if (has_questions(*tracked.frame)) {

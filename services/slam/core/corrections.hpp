@@ -70,7 +70,7 @@ class KeyframeChangeQueue {
 
 /// Frames that were tracked while surfaces were in question, and so without them. When it is known what rests, their
 /// poses are found again with all of it. docs/theory/tracking.md, "Surfaces in question".
-class UnsettledFrames {
+class DeferredFrames {
  public:
   /// Takes in the next tracked frame. Once nothing has been in question for long enough that keyframes have seen it,
   /// those that wait are judged again in `map`. A frame keeps its pose in `frames` where its keyframe is not in the map

@@ -49,7 +49,7 @@ void SlamSystem::reset() {
   placed_ = true;
   map_ = 0;
   frames_.clear();
-  unsettled_ = {};
+  deferred_ = {};
   leave_odometry();
   frames_tracked_ = 0;
   changes_ = {};
@@ -216,7 +216,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   evidence_ = {outcome.tracked.frame, outcome.tracked.T_world_camera, outcome.inliers, std::move(outcome.rejected)};
   record(outcome.tracked);
-  unsettled_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
+  deferred_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!std::exchange(placed_, true)) {
     odometry_.correct(config_.first_pose, tracker_->T_world_camera());  // which reset() has tied it to

@@ -165,7 +165,7 @@ class SlamSystem {
   KeyframeChangeQueue changes_;
   std::vector<FrameRecord> frames_;  ///< all of the last hours (thin_out())
   std::size_t frames_tracked_ = 0;
-  UnsettledFrames unsettled_;
+  DeferredFrames deferred_;
   std::uint64_t event_count_ = 0;
   std::size_t loops_reported_ = 0;
   std::uint64_t source_restarts_ = 0;

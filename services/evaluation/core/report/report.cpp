@@ -16,8 +16,8 @@
 #include "common/io/input_file.hpp"
 #include "common/io/text.hpp"
 #include "common/service/json_text.hpp"
-#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
+#include "services/evaluation/core/trajectory/integrity_text.hpp"
 
 namespace rtd::eval {
 namespace {

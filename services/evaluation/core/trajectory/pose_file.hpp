@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
-#include "services/evaluation/core/integrity/integrity.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 

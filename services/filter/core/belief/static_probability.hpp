@@ -6,7 +6,7 @@
 
 #include "common/msg/features.hpp"
 #include "services/filter/core/belief/surface_beliefs.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"

@@ -10,7 +10,7 @@
 
 #include "common/msg/stamps.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"

@@ -12,7 +12,7 @@
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/boxes/box_tracks.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"

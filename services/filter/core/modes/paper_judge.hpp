@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "services/filter/core/motion/view_store.hpp"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
-#include "common/inertial/camera_turn.hpp"
+#include "common/inertial/preintegration.hpp"
 #include "common/vision/features.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
+#include "services/filter/core/config/motion_config.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
-#include "services/filter/core/motion/motion_config.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 

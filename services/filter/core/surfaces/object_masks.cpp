@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "services/filter/core/surfaces/standing_out.hpp"
+#include "services/filter/core/surfaces/foreground.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -9,7 +9,7 @@ namespace rtd::launcher {
 namespace {
 
 constexpr int kExitUsageOrConfig = 2, kExitAlreadyRuns = 4;
-constexpr int kMostPatience = 10;  // times as long for one that gets no processor
+constexpr int kMostPatience = 10;               // times as long for one that gets no processor
 constexpr Supervisor::Clock kStoodStill{1000};  // update() is called many times in it
 
 /// "1st", "2nd", "3rd", "4th", ..., "11th".
@@ -40,7 +40,7 @@ void Supervisor::start(const ServicePlan& plan, Clock now) {
 }
 
 void Supervisor::update(Clock now) {
-  forgive_standstill(now);
+  exclude_standstill(now);
   for (Child& child : children_) {
     if (child.state == State::kRunning) {
       if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
@@ -55,7 +55,7 @@ void Supervisor::update(Clock now) {
 }
 
 /// Stopped, or in a paused container: the services, stopped as well, had no chance to give a sign or to end.
-void Supervisor::forgive_standstill(Clock now) {
+void Supervisor::exclude_standstill(Clock now) {
   const Clock away = updated_ == Clock(0) ? Clock(0) : now - updated_;
   updated_ = now;
   if (away < kStoodStill) return;

@@ -208,7 +208,7 @@ void MotionPrior::doubt() {
   if (!elsewhere_ && filter_ && filter_->ready()) filter_->doubt();
 }
 
-void MotionPrior::believe(const PredictedPose& measured) {
+void MotionPrior::update(const PredictedPose& measured) {
   correct(measured);
   if (filter_) filter_->trust();
 }

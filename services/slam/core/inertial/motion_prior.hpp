@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "common/geometry/se3.hpp"
-#include "common/inertial/camera_turn.hpp"
+#include "common/inertial/preintegration.hpp"
 #include "services/slam/core/inertial/inertial_filter.hpp"
 #include "services/slam/core/slam_config.hpp"
 
@@ -75,13 +75,13 @@ class MotionPrior {
   std::optional<inertial::CameraTurn> turn_since(std::int64_t from_ns) const;
   /// Its pose by the map, covariance relative to the map. The expected pose with it.
   std::optional<PredictedPose> correct(const PredictedPose& measured);
-  /// Its expected pose if what was learnt before the last believe() may be wrong: that doubt grows with the time since.
+  /// Its expected pose if what was learnt before the last update() may be wrong: that doubt grows with the time since.
   /// Only an IMU learns.
   std::optional<PredictedPose> doubted() const;
   /// A pose that is believed contradicts the expected one: what was learnt was wrong.
   void doubt();
   /// As correct(), by a pose that needs no support by the prior.
-  void believe(const PredictedPose& measured);
+  void update(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
   /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.

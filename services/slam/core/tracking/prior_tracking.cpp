@@ -99,7 +99,7 @@ void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pos
       contradiction_ = off * off.transpose();
     }
   }
-  prior_->believe(measured);
+  prior_->update(measured);
 }
 
 /// Whether an IMU contradicted a pose that was believed, within the span that docs/integrity.md judges: either of both

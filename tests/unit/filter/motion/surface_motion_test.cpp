@@ -7,7 +7,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/vision/samples.hpp"
-#include "services/filter/core/motion/surface_questions.hpp"
+#include "services/filter/core/motion/undecided_surfaces.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {

@@ -42,7 +42,7 @@ class UnsettledFramesTest : public ::testing::Test {
   Map map_;
   LocalMapPtr local_;
   std::vector<FrameRecord> records_;
-  UnsettledFrames frames_;
+  DeferredFrames frames_;
 };
 
 TEST_F(UnsettledFramesTest, are_judged_again_when_nothing_is_in_question_for_a_while) {
