@@ -168,8 +168,8 @@ std::string CommandClient::State::full_name(const std::string& name) const {
   return '/' + (has_robot ? plain : options_.robot + "/" + plain);
 }
 
-/// Waits until it is found: discovery takes a moment, and a server that was killed is known for some seconds beside its
-/// successor.
+/// Waits until it is found: discovery takes a moment, and a server that was killed is known for some seconds next to
+/// its successor.
 FoundCommand CommandClient::State::find(const std::string& full_name, Clock::time_point deadline) const {
   while (true) {
     const std::vector<FoundCommand> all = commands();

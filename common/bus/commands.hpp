@@ -69,7 +69,7 @@ class CommandDesk {
 
   /// As CommandServer. By the worker.
   void offer(const std::string& name, CommandKind kind, CommandServer::Handler handler);
-  /// For work that is long: the handler runs on a thread of its own, beside the worker, and may call run().
+  /// For work that is long: the handler runs on a thread of its own, next to the worker, and may call run().
   void offer_beside(const std::string& name, CommandKind kind, CommandServer::Handler handler);
   /// Runs it on the worker's thread and waits. Not by the worker.
   CommandAnswer run(std::function<CommandAnswer()> work);

@@ -33,7 +33,7 @@ struct ImuNoise {
   double accel_m_s2_rthz = 0;  ///< m/s2 per root Hz
 };
 
-/// What the IMU says of the motion between two moments, without knowing pose, velocity or gravity at the first one.
+/// What the IMU says about the motion between two moments, without knowing pose, velocity or gravity at the first one.
 /// Forster et al., On-Manifold Preintegration (2017); docs/theory/inertial.md Eq. (2) to (5).
 class Preintegration {
  public:

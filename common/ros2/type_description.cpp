@@ -250,7 +250,7 @@ MessageFields service_fields(const std::string& service) {
   return types;
 }
 
-/// Hashes of what the bus carries beside messages, by "package/Type" and "package/srv/Type". A service has one for its
+/// Hashes of what the bus carries besides messages, by "package/Type" and "package/srv/Type". A service has one for its
 /// request and its reply.
 std::map<std::string, std::string> other_hashes() {
   std::map<std::string, std::string> hashes;

@@ -34,7 +34,7 @@ TypeDefinition definition_of(const std::string& dds_type);
 std::string ros2msg_text(const std::string& type, const MessageFields& types);
 
 /// The file Type.msg of a type of our own ("rtd_msgs/Type") in idl/ros2/rtd_msgs/msg: its fields below what
-/// idl/rtd_msgs.idl says of it.
+/// idl/rtd_msgs.idl says about it.
 std::string msg_file(const std::string& type);
 
 /// The text of idl/rtd_msgs.idl.

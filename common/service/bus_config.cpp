@@ -118,7 +118,7 @@ std::vector<std::string> found(const std::string& text, const char* pattern) {
   return values;
 }
 
-/// What a profile says of hosts and interfaces, as options of ours; empty when it says nothing of them.
+/// What a profile says about hosts and interfaces, as our options; empty when it says nothing of them.
 std::string as_options(const std::string& text) {
   const std::vector<std::string> peers = found(text, R"re(<Peer\s+[Aa]ddress="([^"]+)")re");
   std::vector<std::string> more = found(text, R"re(<udpv4>\s*(?:<port>[^<]*</port>\s*)?<address>\s*([^<\s]+))re");

@@ -128,7 +128,7 @@ class ConfigBinder {
   bool is_of_others(const std::string& key, const std::vector<std::string>& other_sections) const;
 
   std::string prefix_;
-  std::vector<Setting> settings_;  ///< those of a section beside each other
+  std::vector<Setting> settings_;  ///< those of a section next to each other
   std::vector<std::string> in_part_;
 };
 

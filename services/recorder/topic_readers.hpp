@@ -35,7 +35,7 @@ class TopicReaders {
   /// Subscribes to topics that have waited too long for the text of their type.
   void tick(std::int64_t now_ns);
   bool any() const;
-  /// Every known writer is matched with a reader of ours.
+  /// Every known writer is matched with one of our readers.
   bool settled() const;
 
  private:

@@ -211,7 +211,7 @@ bus::CommandAnswer SlamCommands::localize_only(bool on) {
                    : "mapping: the map grows again"};
 }
 
-/// Computed here, beside tracking.
+/// Computed here, next to tracking.
 bus::CommandAnswer SlamCommands::ask(const std::string& text) {
   const std::optional<Question> question = parse_question(text);
   if (!question) return {false, kQuestions};

@@ -46,7 +46,7 @@ struct ImageTopics {
 };
 
 /// Completes what the user named: by the names that known drivers give (driver_pairs()), else the only topic of a
-/// fitting type; the calibrations are those beside the images. `info` and `depth_info` stay empty
+/// fitting type; the calibrations are those next to the images. `info` and `depth_info` stay empty
 /// when there is none. Throws SourceError for a topic that is absent, of another type or ambiguous, listing the
 /// topics there are.
 ImageTopics choose_topics(const recordings::Reader& recording, const ImageTopics& named);

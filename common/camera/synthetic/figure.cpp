@@ -45,7 +45,7 @@ bool in_ellipse(float x, float y, float half_width, float half_height) {
   return (x * x) / (half_width * half_width) + (y * y) / (half_height * half_height) < 1;
 }
 
-/// Ambient light: less from below and beside, where arms and legs shade it.
+/// Ambient light: less from below and from the side, where arms and legs shade it.
 ColorBgr shaded(const ColorBgr& color, float around, float height) {
   const float beside = std::abs(sine(kPiF * around));
   return lit(color, (0.92F + 0.10F * height) * (1 - 0.18F * beside * beside));

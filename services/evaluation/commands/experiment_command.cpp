@@ -29,7 +29,7 @@ std::string command_of(const ExperimentOptions& options) {
   return options.is_benchmark() ? "rtd benchmark" : "rtd ablate";
 }
 
-/// The runs of an earlier call that count here; else its file is kept beside the new one.
+/// The runs of an earlier call that count here; else its file is kept next to the new one.
 void resume_from(const ExperimentOptions& options, Experiment& experiment) {
   const fs::path file = fs::path(options.out_dir) / (experiment.name + ".json");
   std::error_code ignored;

@@ -62,7 +62,7 @@ class DynamicFilter {
     return filter::sight_objects(result.objects, result, {grid_, sampler_.rays(), color_bgr});
   }
 
-  /// What an IMU beside the camera measured, in order of time and before the frame that ends there: its gyroscope says
+  /// What an IMU next to the camera measured, in order of time and before the frame that ends there: its gyroscope says
   /// how the camera has turned.
   void add(const inertial::ImuSample& sample) { gyroscope_.add(sample); }
 

@@ -39,7 +39,7 @@ std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
   return frames == 0 ? limit : std::min(frames, limit);
 }
 
-/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
+/// What the first frame, which is read in any case, says about the depth unit; empty when it says nothing.
 std::string doubt_about_depth(camera::FrameSource& source) {
   const std::optional<camera::SourceFrame> first = source.next();
   if (!first) return {};

@@ -40,7 +40,7 @@ class OdometryFrame {
   Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
 };
 
-/// Frames beside an old map, which odometry alone has placed. What it was wrong by when the map is recognised again is
+/// Frames next to an old map, which odometry alone has placed. What it was wrong by when the map is recognised again is
 /// spread evenly over them. docs/theory/tracking.md, "Odometry".
 class OdometryStretch {
  public:

@@ -233,7 +233,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   return outcome;
 }
 
-/// Odometry continues beside an old map, or has just met it again, or is over.
+/// Odometry continues next to an old map, or has just met it again, or is over.
 void SlamSystem::join(const TrackOutcome& outcome) {
   using State = msg::TrackingState;
   const bool found = outcome.at_place() || (msg::is_measured(outcome.state) && !outcome.apart);

@@ -39,7 +39,7 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// The subprotocol of ours that the client prefers; "" when it offers none.
+/// Our subprotocol that the client prefers; "" when it offers none.
 std::string choose_subprotocol(std::string_view offered) {
   while (!offered.empty()) {
     const std::size_t end = std::min(offered.find(','), offered.size());

@@ -53,7 +53,7 @@ struct ComparedRun {
   Run run;
 };
 
-/// A self-contained page that shows runs of the same source beside each other: trajectories in one plot against the
+/// A self-contained page that shows runs of the same source next to each other: trajectories in one plot against the
 /// ground truth, errors over time, numbers, sample frames. The first run is the baseline.
 std::string comparison_html(const std::vector<ComparedRun>& runs);
 

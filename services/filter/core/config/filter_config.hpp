@@ -166,7 +166,7 @@ struct ClusterConfig {
 /// How a box becomes a mask.
 struct MaskConfig {
   bool whole_boxes = false;  ///< the box is the object, whatever its depth
-  bool holes = true;         ///< cells without depth beside an object belong to it
+  bool holes = true;         ///< cells without depth next to an object belong to it
   double min_share = 0.15;
   double max_object_depth_m = 0.5;
   double min_contained = 0.5;

@@ -53,7 +53,7 @@ struct SeenCells {
 };
 
 /// Objects that are in view: tracked ones of a high level, others while they move, movers without a class, and surfaces
-/// that move beside all of these.
+/// that move besides all of these.
 std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
                                           const SeenCells& seen);
 

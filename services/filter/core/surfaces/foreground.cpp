@@ -106,7 +106,7 @@ double outline_step_share(const std::vector<int>& cells, const DepthGrid& grid, 
   return known == 0 ? 1.0 : static_cast<double>(outline.steps) / known;
 }
 
-/// A thing beside a person, or beside another thing at the same depth, stands out once that is left out.
+/// A thing next to a person, or next to another thing at the same depth, stands out once that is left out.
 CellMask surfaces_in_question(const Surroundings& seen, const KnownSurfaces& known, double min_step_m) {
   std::vector<Surface> waiting = candidates(seen, known);
   CellMask left_out(known.excluded), in_question(left_out.size(), 0), things(left_out.size(), 0);

@@ -35,7 +35,7 @@ struct LiveStatus {
 /// columns.
 std::string format_live_status(const LiveStatus& status);
 
-/// Services of others in the domain that disturb no run, beside recorders, which only subscribe.
+/// Services of others in the domain that disturb no run, besides recorders, which only subscribe.
 struct Tolerated {
   bool detector = false;         ///< it runs on another host
   bool harmless_replay = false;  ///< a replay that plays no topic of a run: its metric run_topics is 0
@@ -83,7 +83,7 @@ class RecordBuilder {
   /// The newest frame of the camera, and the newest one with a result; empty before the first.
   std::optional<FramePlace> last_seen() const { return last_seen_; }
   std::optional<FramePlace> last_answered() const { return last_answered_; }
-  /// What the camera says of itself; at its end the first piece that its source left out.
+  /// What the camera says about itself; at its end the first piece that its source left out.
   std::string camera_message() const;
   LiveStatus live() const;
   /// The newest message of a degraded service; returned once, also when its numbers change.

@@ -84,7 +84,7 @@ class MotionPrior {
   void update(const PredictedPose& measured);
   /// The camera was found elsewhere than it was expected.
   void relocate(const PredictedPose& measured);
-  /// The pose of the frame in work is claimed as expected; what an IMU says of it later is a correction.
+  /// The pose of the frame in work is claimed as expected; what an IMU says about it later is a correction.
   void remember(std::uint64_t seq);
   std::vector<PoseCorrection> take_corrections();
   /// The map was corrected under the camera.

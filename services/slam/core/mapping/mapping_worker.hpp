@@ -18,7 +18,7 @@ namespace rtd::slam {
 
 enum class MappingMode : std::uint8_t {
   kSynchronous,  ///< in the caller's thread: same input, same map
-  kThreaded,     ///< beside tracking
+  kThreaded,     ///< next to tracking
 };
 
 /// What happens to a global bundle adjustment that is under way when mapping ends: it may need seconds.

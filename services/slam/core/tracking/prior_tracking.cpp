@@ -62,7 +62,7 @@ double Tracker::expected_radius_px(const Frame& frame) const {
 }
 
 /// Whether a view that is not covered turns as the gyroscope says. What contradicts such a pose is the accelerometer: a
-/// filter that began beside something that moves has learnt a wrong velocity.
+/// filter that began next to something that moves has learnt a wrong velocity.
 bool Tracker::turns_as_measured(const Frame& frame, const PoseGuess& guess) const {
   constexpr double kMaxTurn2 = 11.3;  // 99 % of chi2 with 3 degrees of freedom
   if (!rotation_ || covered(frame)) return false;
