@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/command_book.hpp"
+#include "common/bus/command_registry.hpp"
 #include "common/bus/robot.hpp"
 #include "common/bus/topics.hpp"
 #include "common/bus/traffic.hpp"
@@ -166,7 +166,7 @@ class Bus {
   }
 
   /// What CommandServers on this connection offer.
-  const std::shared_ptr<CommandBook>& commands() const { return commands_; }
+  const std::shared_ptr<CommandRegistry>& commands() const { return commands_; }
 
   const std::string& vendor() const { return backend_->vendor(); }
   /// Whose topics writers and readers get; "" for a robot without a name.
@@ -186,7 +186,7 @@ class Bus {
   TopicCounters counters_;
   const std::shared_ptr<Traffic> traffic_;
   std::shared_ptr<BusBackend> backend_;
-  const std::shared_ptr<CommandBook> commands_ = std::make_shared<CommandBook>();
+  const std::shared_ptr<CommandRegistry> commands_ = std::make_shared<CommandRegistry>();
   const std::string robot_;
 };
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/security_guard.hpp"
 #include "common/bus/vendors.hpp"
@@ -71,7 +71,7 @@ std::shared_ptr<BusBackend> create_cyclonedds(const BusOptions& options) {
 }
 #endif
 
-/// A new vendor is a folder beside this file and one entry here. The first one is the default.
+/// A new vendor is a folder next to this file and one entry here. The first one is the default.
 const Vendor kVendors[] = {
 #ifdef RTD_HAVE_FASTDDS
     {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus,

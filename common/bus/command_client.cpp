@@ -11,7 +11,7 @@
 
 #include "common/bus/command_codec.hpp"
 #include "common/bus/commands.hpp"
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/bus/robot.hpp"
 #include "common/io/text.hpp"
@@ -168,8 +168,8 @@ std::string CommandClient::State::full_name(const std::string& name) const {
   return '/' + (has_robot ? plain : options_.robot + "/" + plain);
 }
 
-/// Waits until it is found: discovery takes a moment, and a server that was killed is known for some seconds beside its
-/// successor.
+/// Waits until it is found: discovery takes a moment, and a server that was killed is known for some seconds next to
+/// its successor.
 FoundCommand CommandClient::State::find(const std::string& full_name, Clock::time_point deadline) const {
   while (true) {
     const std::vector<FoundCommand> all = commands();

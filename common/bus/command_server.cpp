@@ -21,53 +21,39 @@ CallTopics topics_of(const Bus& bus, const std::string& name, CommandKind kind) 
 
 }  // namespace
 
-class CommandServer::State {
- public:
-  State(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
-      : listed_(bus.commands(), name, std::move(handler)),
-        calls_(bus, {{topics_of(bus, name, kind),
-                      [this, kind](std::span<const std::byte> cdr) { return encode_answer(handle(kind, cdr)); }}}) {}
+CommandServer::Listed::Listed(std::shared_ptr<CommandRegistry> commands, std::string name, Handler handler)
+    : commands_(std::move(commands)), name_(std::move(name)) {
+  commands_->add(name_, std::move(handler));
+}
 
- private:
-  struct Listed {
-    Listed(std::shared_ptr<CommandBook> commands, std::string command, Handler handler)
-        : book(std::move(commands)), name(std::move(command)) {
-      book->add(name, std::move(handler));
-    }
-    ~Listed() { book->remove(name); }
-    Listed(const Listed&) = delete;
-    Listed& operator=(const Listed&) = delete;
+CommandServer::Listed::~Listed() {
+  commands_->remove(name_);
+}
 
-    const std::shared_ptr<CommandBook> book;
-    const std::string name;
-  };
-
-  CommandAnswer handle(CommandKind kind, std::span<const std::byte> cdr) const {
-    if (cdr.size() > kMaxRequestBytes)
-      return {false, "a request has at most " + std::to_string(kMaxRequestBytes) + " bytes"};
-    try {
-      return listed_.book->call(listed_.name, decode_request(kind, cdr)).value_or(CommandAnswer{false, kEnding});
-    } catch (const std::exception& error) {
-      return {false, error.what()};
-    }
+CommandAnswer CommandServer::Listed::handle(CommandKind kind, std::span<const std::byte> cdr) const {
+  if (cdr.size() > kMaxRequestBytes)
+    return {false, "a request has at most " + std::to_string(kMaxRequestBytes) + " bytes"};
+  try {
+    return commands_->call(name_, decode_request(kind, cdr)).value_or(CommandAnswer{false, kEnding});
+  } catch (const std::exception& error) {
+    return {false, error.what()};
   }
-
-  const Listed listed_;
-  CallServer calls_;  // last: it uses the other
-};
+}
 
 CommandServer::CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler)
-    : state_(std::make_unique<State>(bus, name, kind, std::move(handler))) {}
-CommandServer::~CommandServer() = default;
+    : listed_(bus.commands(), name, std::move(handler)),
+      calls_(bus, {{topics_of(bus, name, kind), [this, kind](std::span<const std::byte> cdr) {
+                      return encode_answer(listed_.handle(kind, cdr));
+                    }}}) {}
 
-void CommandBook::add(const std::string& name, CommandHandler handler) {
+void CommandRegistry::add(const std::string& name, CommandHandler handler) {
   auto entry = std::make_shared<Entry>();
   entry->handler = std::move(handler);
   const std::lock_guard lock(mutex_);
   entries_[name] = std::move(entry);
 }
 
-void CommandBook::remove(const std::string& name) {
+void CommandRegistry::remove(const std::string& name) {
   std::shared_ptr<Entry> entry;
   {
     const std::lock_guard lock(mutex_);
@@ -79,7 +65,7 @@ void CommandBook::remove(const std::string& name) {
   entry->handler = nullptr;
 }
 
-std::optional<CommandAnswer> CommandBook::call(const std::string& name, const CommandRequest& request) {
+std::optional<CommandAnswer> CommandRegistry::call(const std::string& name, const CommandRequest& request) {
   std::shared_ptr<Entry> entry;
   {
     const std::lock_guard lock(mutex_);

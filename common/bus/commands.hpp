@@ -13,7 +13,8 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/command_book.hpp"
+#include "common/bus/call_server.hpp"
+#include "common/bus/command_registry.hpp"
 
 /// Commands to a running service, over DDS as ROS 2 services: `ros2 service call` and `rtd call` do the same.
 namespace rtd::bus {
@@ -37,14 +38,23 @@ class CommandServer {
 
   /// `name`: "slam/reset", below the name of the bus's robot if it has one. Throws BusError: refused.
   CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler);
-  /// Waits for a running handler; requests that still wait get no answer.
-  ~CommandServer();
-  CommandServer(const CommandServer&) = delete;
-  CommandServer& operator=(const CommandServer&) = delete;
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  /// In the registry while it lives.
+  class Listed {
+   public:
+    Listed(std::shared_ptr<CommandRegistry> commands, std::string name, Handler handler);
+    ~Listed();
+    Listed(const Listed&) = delete;
+    Listed& operator=(const Listed&) = delete;
+    CommandAnswer handle(CommandKind kind, std::span<const std::byte> cdr) const;
+
+   private:
+    const std::shared_ptr<CommandRegistry> commands_;
+    const std::string name_;
+  };
+  const Listed listed_;
+  CallServer calls_;  // last: it uses the other
 };
 
 /// The commands of a service that has a worker. Their handlers run on the worker's own thread, between two steps of its
@@ -59,7 +69,7 @@ class CommandDesk {
 
   /// As CommandServer. By the worker.
   void offer(const std::string& name, CommandKind kind, CommandServer::Handler handler);
-  /// For work that is long: the handler runs on a thread of its own, beside the worker, and may call run().
+  /// For work that is long: the handler runs on a thread of its own, next to the worker, and may call run().
   void offer_beside(const std::string& name, CommandKind kind, CommandServer::Handler handler);
   /// Runs it on the worker's thread and waits. Not by the worker.
   CommandAnswer run(std::function<CommandAnswer()> work);

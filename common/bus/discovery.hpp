@@ -20,7 +20,7 @@ namespace rtd::bus {
 /// them, and reports nothing. Thread-safe.
 class TopicTypes {
  public:
-  /// Reports mismatches of one endpoint of ours as long as it lives.
+  /// Reports mismatches of one of our endpoints as long as it lives.
   class Watch {
    public:
     Watch(TopicTypes& types, const std::string& topic, const std::string& type, StatusReporter& status);

@@ -14,7 +14,7 @@
 namespace rtd::bus {
 
 /// Participants of a host that a peer without a port is asked for: those at the discovery ports of the first ids of a
-/// domain, 7410 + 250 * domain + 2 * id. Every participant of ours takes the first free one of them. ROS 2 with
+/// domain, 7410 + 250 * domain + 2 * id. Each of our participants takes the first free one of them. ROS 2 with
 /// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST finds others by asking as many, on loopback.
 inline constexpr int kPeerParticipants = 32;
 
@@ -34,7 +34,7 @@ struct HostAddress {
 /// HOST or HOST:PORT, names resolved. Throws BusError naming `option` when it cannot be.
 HostAddress resolve_host(const std::string& text, const std::string& option);
 
-/// IPv4 addresses of the interfaces to use beside loopback: those named, or all that are up but bridges (those of
+/// IPv4 addresses of the interfaces to use besides loopback: those named, or all that are up but bridges (those of
 /// containers and virtual machines). Empty with loopback_only. Throws BusError: no such interface, none is up.
 std::vector<std::string> interface_addresses(const NetworkOptions& network);
 

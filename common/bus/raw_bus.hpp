@@ -18,7 +18,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/writer_id.hpp"
 
-/// Topics as bytes: recording, replaying and inspecting need no type. Beside Bus, on a connection of its own.
+/// Topics as bytes: recording, replaying and inspecting need no type. In addition to Bus, on a connection of its own.
 namespace rtd::bus {
 
 /// Bytes of a changing number in memory that is kept and not cleared. Made for samples as CDR: what follows the 4 bytes
@@ -88,7 +88,7 @@ struct TopicWriter {
   bool own = false;            ///< belongs to this connection
   bool shared_memory = false;  ///< its samples, of a fixed size, can be read in its shared memory
   std::string
-      user_data;  ///< what it announces beside; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_description.hpp)
+      user_data;  ///< what it announces besides; ROS 2: "typehash=RIHS01_...;" (common/ros2/type_description.hpp)
 };
 
 struct TopicReader {

@@ -38,7 +38,7 @@ bool is_internal_to_ros(std::string_view wire_name);
 /// The service that answers on this topic: "anna/slam/reset" of "rr/anna/slam/resetReply"; "" for other topics.
 std::string_view service_of_reply(std::string_view wire_name);
 
-/// The inverse of topic_of_robot() for the topics of topics.hpp and those beside them in the same ROS namespaces
+/// The inverse of topic_of_robot() for the topics of topics.hpp and those next to them in the same ROS namespaces
 /// ("rt/slam/..."); other names belong to no robot.
 RobotTopic split_robot(std::string_view wire_name);
 

@@ -16,7 +16,7 @@
 
 /// Nodes of ROS 2. DDS knows participants and endpoints only; every participant of ROS 2 announces the nodes that it
 /// has, with their endpoints, in one latched message on the topic ros_discovery_info. `ros2 node list`, `ros2 node
-/// info` and rqt_graph show what they find there. A connection of ours is one node.
+/// info` and rqt_graph show what they find there. Each of our connections is one node.
 namespace rtd::bus {
 
 /// A node by its two names: "/" and "rtd_slam", "/anna" and "rtd_slam".
@@ -26,7 +26,7 @@ struct NodeName {
 /// The node of a connection, by its participant's name and its robot.
 NodeName node_name(const std::string& participant_name, const std::string& robot);
 
-/// What a participant says of itself in its USER_DATA: the enclave, as every node of ROS 2 does.
+/// What a participant says about itself in its USER_DATA: the enclave, as every node of ROS 2 does.
 std::string participant_user_data(const BusOptions& options);
 
 /// The endpoints of one participant. Thread-safe.
@@ -34,7 +34,7 @@ class NodeEndpoints {
  public:
   enum class Direction { kReads, kWrites };
 
-  /// An endpoint of ours, as long as it lives.
+  /// One of our endpoints, as long as it lives.
   class Entry {
    public:
     Entry(NodeEndpoints& endpoints, const std::string& topic, const WriterId& id, Direction direction);

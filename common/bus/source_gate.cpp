@@ -9,8 +9,8 @@ namespace rtd::bus {
 namespace {
 
 constexpr std::size_t kMaxClaims = 8, kMaxDeparted = 32, kMaxMatched = 256, kMaxRefused = 256;
-constexpr std::int64_t kMessagesOnTheirWayNs = 1'000'000'000;  // of one that has ended, on a busy host
-constexpr std::int64_t kReceivedLatelyNs = 50'000'000;         // no need to ask whether it lives
+constexpr std::int64_t kInFlightNs = 1'000'000'000;     // of one that has ended, on a busy host
+constexpr std::int64_t kReceivedLatelyNs = 50'000'000;  // no need to ask whether it lives
 
 }  // namespace
 
@@ -55,7 +55,7 @@ SourceGate::Verdict SourceGate::refuse(const ParticipantId& source, std::int64_t
 /// A successor of one that ended unnoticed is refused for a while, too, but receives nothing more from it.
 bool SourceGate::sent_beside_holder(const ParticipantId& source) const {
   const auto refused = refused_since_ns_.find(source);
-  return refused != refused_since_ns_.end() && claims_[holder_].received_ns - refused->second > kMessagesOnTheirWayNs;
+  return refused != refused_since_ns_.end() && claims_[holder_].received_ns - refused->second > kInFlightNs;
 }
 
 SourceGate::Verdict SourceGate::take(std::size_t place, std::int64_t now_ns, Event event) {

@@ -19,7 +19,7 @@ namespace rtd::bus {
 
 /// Lets the messages of one source pass: of the connection that came first. It keeps its place while its writer is
 /// matched, whatever others send, and loses it when its writer or its process is gone, or after a long silence. Its
-/// successor has the place at once; one that sent beside it waits for the long silence. One that only fell silent has
+/// successor has the place at once; one that sent next to it waits for the long silence. One that only fell silent has
 /// its place back with its next message. Sources are identified by their writers' ids, not by their messages' content.
 ///
 /// Thread-safe; several readers may share a gate, then all their messages come from one connection.
@@ -39,7 +39,7 @@ class SourceGate : public std::enable_shared_from_this<SourceGate> {
   struct Options {
     /// So long does a matched source that sends nothing keep its place.
     std::int64_t silence_ns = kSilenceNs;
-    /// Whether one that sent beside a source waits for the silence after that source's end, too.
+    /// Whether one that sent next to a source waits for the silence after that source's end, too.
     bool successors_only = true;
     Clock clock;  ///< monotonic, ns
     /// Whether the process of a connection is known to have ended before its writers are given up. May be empty.
@@ -91,9 +91,9 @@ class SourceGate : public std::enable_shared_from_this<SourceGate> {
 
   const Options options_;
   mutable std::mutex mutex_;
-  std::vector<Claim> claims_;      ///< sources that had the place, by their first message
-  std::size_t holder_ = kNone;     ///< in claims_
-  std::map<ParticipantId, int> matched_;  ///< how many of its writers
+  std::vector<Claim> claims_;                               ///< sources that had the place, by their first message
+  std::size_t holder_ = kNone;                              ///< in claims_
+  std::map<ParticipantId, int> matched_;                    ///< how many of its writers
   std::map<ParticipantId, std::int64_t> refused_since_ns_;  ///< sources that this holder's presence kept out
   std::deque<WriterId> departed_;  ///< writers that are gone, newest last: their last messages claim nothing
   std::uint64_t changes_ = 0, refused_ = 0;

@@ -23,7 +23,7 @@ const Roles kFrameReaders = {"filter", "detector", "dense", "launcher", "viewer"
 const Roles kOnlookers = {"viewer", "observer", "link"};
 /// They may call commands.
 const Roles kCallers = {"viewer", "call"};
-/// They may be ROS 2 nodes, with what every node opens beside its own topics.
+/// They may be ROS 2 nodes, with what every node opens besides its own topics.
 const Roles kRosNodes = {"observer", "call"};
 
 Roles operator+(Roles roles, const Roles& further) {
@@ -99,7 +99,7 @@ const std::vector<TopicRoles>& topic_roles() {
       // Whatever is recorded can be played again; both work without types.
       {"rtd/*", {"replay"}, {"record", "replay", "topics"}},
       {"rt/*", {"replay"}, {"record", "replay", "topics"}},
-      // What every ROS 2 node opens beside its own topics.
+      // What every ROS 2 node opens besides its own topics.
       {"ros_discovery_info", kRosNodes, kRosNodes},
       {"rt/rosout", kRosNodes, {}},
       {"rt/parameter_events", kRosNodes, kRosNodes},

@@ -16,7 +16,7 @@
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/rgbd_frame.hpp"
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::camera {
 namespace {

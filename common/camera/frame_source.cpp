@@ -10,7 +10,7 @@
 #include <numeric>
 #include <utility>
 
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::camera {
 

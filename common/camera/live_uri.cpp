@@ -31,7 +31,7 @@ std::vector<std::string> split_topics(const std::string& list) {
   return topics;
 }
 
-/// "camera_info" beside the image, as image_transport has it.
+/// "camera_info" next to the image, as image_transport has it.
 std::string info_beside(std::string image) {
   for (const std::string transport : {"/compressed", "/compressedDepth"}) {
     if (image.ends_with(transport)) image.resize(image.size() - transport.size());

@@ -28,7 +28,7 @@ bool is_live(const std::string& uri);
 /// Throws SourceError when the URI of a running camera is malformed; opens nothing.
 void check_live_uri(const std::string& uri);
 
-/// Topics and parameters of such a URI; INFO is `camera_info` beside COLOR when not named, depth_info that beside
+/// Topics and parameters of such a URI; INFO is `camera_info` next to COLOR when not named, depth_info that next to
 /// DEPTH. Throws SourceError.
 LiveOptions parse_live_options(const std::string& uri);
 

@@ -168,4 +168,15 @@ std::optional<Eigen::Vector3d> up_at_rest(const ImuStream& samples, double min_s
   return rest ? std::optional<Eigen::Vector3d>(rest->accel_m_s2.normalized()) : std::nullopt;
 }
 
+CameraTurn turn_of_camera(const Preintegration& motion, const Eigen::Matrix3d& R_camera_imu,
+                          const GyroscopeErrors& errors) {
+  const Eigen::Matrix3d by_bias = motion.bias_jacobian().topLeftCorner<3, 3>();
+  const double scale_rad = errors.scale_error * geometry::so3_log(motion.rotation()).norm();
+  const Eigen::Matrix3d covariance = motion.covariance().topLeftCorner<3, 3>() +
+                                     by_bias * errors.bias_covariance * by_bias.transpose() +
+                                     scale_rad * scale_rad * Eigen::Matrix3d::Identity();
+  return {R_camera_imu * motion.rotation() * R_camera_imu.transpose(),
+          R_camera_imu * covariance * R_camera_imu.transpose()};
+}
+
 }  // namespace rtd::inertial

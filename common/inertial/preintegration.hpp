@@ -33,7 +33,7 @@ struct ImuNoise {
   double accel_m_s2_rthz = 0;  ///< m/s2 per root Hz
 };
 
-/// What the IMU says of the motion between two moments, without knowing pose, velocity or gravity at the first one.
+/// What the IMU says about the motion between two moments, without knowing pose, velocity or gravity at the first one.
 /// Forster et al., On-Manifold Preintegration (2017); docs/theory/inertial.md Eq. (2) to (5).
 class Preintegration {
  public:
@@ -113,5 +113,23 @@ class ImuStream {
 
 /// The up direction in the IMU's axes, of length 1, of an IMU that has rested for `min_s`; empty when it has not.
 std::optional<Eigen::Vector3d> up_at_rest(const ImuStream& samples, double min_s);
+
+/// How the camera has turned between two moments: a vector in the axes of the later one becomes one in those of the
+/// earlier. The covariance is of a small turn in the axes of the later moment, rad^2.
+struct CameraTurn {
+  Eigen::Matrix3d R_earlier_later = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
+};
+
+/// What is not known of a gyroscope.
+struct GyroscopeErrors {
+  Eigen::Matrix3d bias_covariance = Eigen::Matrix3d::Zero();  ///< of what is left of the bias, (rad/s)^2, IMU's axes
+  double scale_error = 0;                                     ///< of it and its clock, share of a turn
+};
+
+/// Of the camera to which the IMU is fixed. `R_camera_imu`: from the IMU's axes to the optical frame.
+/// docs/theory/dynamic_points.md Eq. (15).
+CameraTurn turn_of_camera(const Preintegration& motion, const Eigen::Matrix3d& R_camera_imu,
+                          const GyroscopeErrors& errors);
 
 }  // namespace rtd::inertial

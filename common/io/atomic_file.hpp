@@ -24,13 +24,14 @@ enum class NamedBy { kProgram, kOperator };
 struct AtomicOptions {
   NamedBy named_by = NamedBy::kProgram;
   IfExists if_exists = IfExists::kReplace;
-  unsigned mode = 0644;    ///< of a new file, less the umask
-  bool keep_mode = true;   ///< a replaced file's permissions stay
-  bool durable = true;     ///< survives a power cut from commit() on; off for one of thousands of files
+  unsigned mode = 0644;   ///< of a new file, less the umask
+  bool keep_mode = true;  ///< a replaced file's permissions stay
+  bool durable = true;    ///< survives a power cut from commit() on; off for one of thousands of files
 };
 
 /// A file that appears whole or not at all, and in one step takes the place of what had its name: written under a
-/// random name beside it (O_EXCL), made durable and renamed by commit(). Without commit() nothing is left. For one thread.
+/// random name next to it (O_EXCL), made durable and renamed by commit(). Without commit() nothing is left. For one
+/// thread.
 class AtomicFile final : public ByteSink {
  public:
   /// Throws IoError naming file, cause and fix: no such folder, read-only, a symbolic link, it exists (kFail), ...

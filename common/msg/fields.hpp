@@ -4,7 +4,7 @@
 
 #include <type_traits>
 
-/// The one list of a message's fields. One line beside each struct of common/msg, in namespace rtd::msg:
+/// The one list of a message's fields. One line next to each struct of common/msg, in namespace rtd::msg:
 ///   RTD_FIELDS(builtin_interfaces, Time, sec, nanosec)
 /// names its ROS package, the struct and all its fields, in the order of the wire. Codecs, schemas, type hashes and
 /// tools go by it; tests/unit/bus proves that the IDL files and the code that both DDS vendors generate agree with it.

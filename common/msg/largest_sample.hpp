@@ -8,9 +8,9 @@
 
 #include "common/msg/fields.hpp"
 
-/// How large a sample on the bus may be, its CDR header included. What common/msg/field_rules.hpp says of single fields
-/// is no such limit: a message in which all of them are at their largest is never sent. Both vendors refuse a larger
-/// sample before they take memory for it, and our writers do not write it.
+/// How large a sample on the bus may be, its CDR header included. What common/msg/field_rules.hpp says about single
+/// fields is no such limit: a message in which all of them are at their largest is never sent. Both vendors refuse a
+/// larger sample before they take memory for it, and our writers do not write it.
 namespace rtd::msg {
 
 inline constexpr std::size_t kKib = 1024, kMib = 1024 * kKib;

@@ -10,7 +10,7 @@
 
 namespace rtd::msg {
 
-/// Bits of MapKeyframe::content: what an entry says beside the pose.
+/// Bits of MapKeyframe::content: what an entry says besides the pose.
 enum MapContent : std::uint32_t {
   kMapPoints = 1U << 0,   ///< points_m replaces the points of the keyframe
   kMapEdges = 1U << 1,    ///< covisible replaces its edges

@@ -10,8 +10,9 @@
 
 #include "common/msg/fields.hpp"
 
-/// What a participant says of its nodes on the topic ros_discovery_info, from which ROS 2 knows nodes and which topics
-/// and services are whose. Up to Humble an identity has 24 bytes, later 16: the GUID of DDS, filled up with zeros.
+/// What a participant says about its nodes on the topic ros_discovery_info, from which ROS 2 knows nodes and which
+/// topics and services are whose. Up to Humble an identity has 24 bytes, later 16: the GUID of DDS, filled up with
+/// zeros.
 namespace rtd::msg {
 
 template <std::size_t kBytes>

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -42,6 +43,14 @@ constexpr std::int64_t ns_of(double seconds) {
   constexpr double kMax = 9.2e18;  // fits; so does its negative
   const double ns = 1e9 * seconds;
   return ns == ns ? static_cast<std::int64_t>(std::clamp(ns, -kMax, kMax)) : 0;
+}
+
+/// Bound of a sensor's readout time and of the time between its colour and depth image, s, of either sign.
+inline constexpr double kMaxSensorTime_s = 0.1;
+
+/// Whether such a time is finite and within its bound.
+inline bool is_sensor_time(double time_s) {
+  return std::abs(time_s) <= kMaxSensorTime_s;
 }
 
 }  // namespace rtd::msg

@@ -67,7 +67,7 @@ NavigationGrid project(const Volume& volume, double floor_m, const RobotHeights&
 
 /// Binary PGM as map_server reads it: 0 occupied, 254 free, 205 unknown, the highest y first.
 void write_pgm(std::ostream& out, const NavigationGrid& grid);
-/// The YAML file beside it.
+/// The YAML file next to it.
 std::string map_yaml(const NavigationGrid& grid, const std::string& image);
 
 }  // namespace rtd::occupancy

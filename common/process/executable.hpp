@@ -10,7 +10,7 @@ namespace rtd::process {
 /// The folder of this program's executable.
 std::string own_directory();
 
-/// The path of `name`: beside this program, else in PATH; empty when it is in neither.
+/// The path of `name`: next to this program, else in PATH; empty when it is in neither.
 std::string find_executable(const std::string& name);
 
 /// Why `name` cannot be run: where it was searched, and how to build it.
@@ -19,7 +19,7 @@ std::string missing_executable(const std::string& name);
 /// find_executable(), but throws service::ConfigError with that reason.
 std::string require_executable(const std::string& name);
 
-/// NAME of each executable rtd-NAME beside this program and in PATH, sorted.
+/// NAME of each executable rtd-NAME next to this program and in PATH, sorted.
 std::vector<std::string> installed_commands();
 
 /// Becomes the program; returns only on failure, with the reason.

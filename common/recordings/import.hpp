@@ -11,7 +11,7 @@
 
 #include "common/io/unpacked.hpp"
 #include "common/mcap/writer.hpp"
-#include "common/recordings/form.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::recordings {
 

@@ -13,7 +13,7 @@
 
 namespace rtd::recordings {
 
-/// What the file says of messages of one topic and type, word for word.
+/// What the file says about messages of one topic and type, word for word.
 struct StoredChannel {
   std::string topic, type;
   std::string encoding;  ///< of the messages: "cdr", "ros1", ...

@@ -16,9 +16,9 @@
 #include "common/io/unpacked.hpp"
 #include "common/mcap/copy.hpp"
 #include "common/mcap/recording_file.hpp"
-#include "common/recordings/form.hpp"
 #include "common/recordings/import.hpp"
 #include "common/recordings/parts.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::recordings {
 namespace fs = std::filesystem;

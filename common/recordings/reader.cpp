@@ -7,9 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "common/mcap/compression.hpp"
+#include "common/io/byte_sink.hpp"
+#include "common/io/recording_forms.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/indexed_reader.hpp"
@@ -122,6 +125,24 @@ void replace(std::string& text, const std::string& from, const std::string& to) 
 }
 
 }  // namespace
+
+Form form_of(const io::ByteSource& source) {
+  std::array<std::byte, io::kMagicBytes> bytes{};
+  const std::size_t count = source.read(0, bytes);
+  const std::string_view begin(reinterpret_cast<const char*>(bytes.data()), count);
+  if (begin.starts_with(io::kBagMagic)) return Form::kBag;
+  if (begin.starts_with(io::kDb3Magic)) return Form::kDb3;
+  if (begin.starts_with(io::kZstdMagic)) return Form::kPacked;
+  return mcap::looks_like_recording(source) ? Form::kMcap : Form::kOther;
+}
+
+Form form_of(const std::filesystem::path& path) {
+  try {
+    return form_of(io::FileSource(path));
+  } catch (const io::IoError&) {
+    return Form::kOther;
+  }
+}
 
 std::unique_ptr<Reader> open_reader(const std::filesystem::path& path, Form form) {
   if (form == Form::kBag || form == Form::kDb3) return open_indexed(path, form);

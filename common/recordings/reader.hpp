@@ -11,10 +11,25 @@
 #include <utility>
 #include <vector>
 
-#include "common/recordings/form.hpp"
+#include "common/io/byte_source.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::recordings {
+
+/// What a file of a recording is.
+enum class Form {
+  kMcap,
+  kBag,     ///< of ROS 1
+  kDb3,     ///< a database of rosbag2
+  kPacked,  ///< with zstd, whatever it holds
+  kOther,   ///< no recording
+};
+
+/// By how it begins. An MCAP file whose first bytes are damaged is known by the header behind them.
+Form form_of(const io::ByteSource& source);
+
+/// The same of a file. kOther for a folder and for what cannot be read.
+Form form_of(const std::filesystem::path& path);
 
 /// A topic of a recording.
 /// Not longer than names of topics and types are in ROS 2. Others are not read: each message would repeat them.

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
 #include <set>
 #include <sstream>
 #include <string_view>
+#include <vector>
 
 #include "common/msg/commands.hpp"
 #include "common/msg/imu.hpp"
@@ -248,7 +250,7 @@ MessageFields service_fields(const std::string& service) {
   return types;
 }
 
-/// Hashes of what the bus carries beside messages, by "package/Type" and "package/srv/Type". A service has one for its
+/// Hashes of what the bus carries besides messages, by "package/Type" and "package/srv/Type". A service has one for its
 /// request and its reply.
 std::map<std::string, std::string> other_hashes() {
   std::map<std::string, std::string> hashes;
@@ -270,6 +272,34 @@ std::string service_of(const std::string& dds_type) {
       return type.substr(0, type.size() - part.size());
   }
   return {};
+}
+
+/// Names, numbers and signs, without comments.
+std::vector<std::string> words_of(const std::string& idl) {
+  std::vector<std::string> words;
+  std::istringstream lines(idl);
+  for (std::string line; std::getline(lines, line);) {
+    bool in_name = false;
+    for (const char c : line.substr(0, line.find("//"))) {
+      const bool names = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+      const bool blank = std::isspace(static_cast<unsigned char>(c)) != 0;
+      if (names && in_name) {
+        words.back() += c;
+      } else if (!blank) {
+        words.emplace_back(1, c);
+      }
+      in_name = names;
+    }
+  }
+  return words;
+}
+
+/// Where the body of each struct begins, behind "struct NAME {".
+std::map<std::string, std::size_t> bodies_in(const std::vector<std::string>& words) {
+  std::map<std::string, std::size_t> bodies;
+  for (std::size_t i = 0; i + 3 < words.size(); ++i)
+    if (words[i] == "struct" && words[i + 2] == "{") bodies.try_emplace(words[i + 1], i + 3);
+  return bodies;
 }
 
 }  // namespace
@@ -341,6 +371,23 @@ std::string hash_in(const std::string& user_data) {
   if (!is_key) return {};
   const std::size_t value = begin + kKey.size();
   return user_data.substr(value, user_data.find(';', value) - value);
+}
+
+std::string layout_in(const std::string& idl, const std::string& struct_name) {
+  const std::vector<std::string> words = words_of(idl);
+  std::map<std::string, std::size_t> bodies = bodies_in(words);  // that are not written yet
+  std::string layout;
+  std::vector<std::string> structs{struct_name};
+  for (std::size_t next = 0; next < structs.size(); ++next) {
+    const auto body = bodies.extract(structs[next]);
+    if (!body || words[body.mapped()] == "}") continue;
+    layout += structs[next] + ": ";
+    for (std::size_t i = body.mapped(); i < words.size() && words[i] != "}"; ++i) {
+      layout += words[i] + ' ';
+      if (bodies.contains(words[i])) structs.push_back(words[i]);
+    }
+  }
+  return layout;
 }
 
 }  // namespace rtd::ros2

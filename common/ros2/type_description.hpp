@@ -34,7 +34,7 @@ TypeDefinition definition_of(const std::string& dds_type);
 std::string ros2msg_text(const std::string& type, const MessageFields& types);
 
 /// The file Type.msg of a type of our own ("rtd_msgs/Type") in idl/ros2/rtd_msgs/msg: its fields below what
-/// idl/rtd_msgs.idl says of it.
+/// idl/rtd_msgs.idl says about it.
 std::string msg_file(const std::string& type);
 
 /// The text of idl/rtd_msgs.idl.
@@ -55,5 +55,10 @@ std::string user_data_of(const std::string& dds_type);
 
 /// The hash in the USER_DATA of an endpoint, or empty.
 std::string hash_in(const std::string& user_data);
+
+/// The fields of `struct_name` ("RgbdFrame_") in a text of the OMG's IDL, and those of the types that it is made of,
+/// without comments and white space: two texts give the same when samples have the same bytes. Empty when the text does
+/// not define it.
+std::string layout_in(const std::string& idl, const std::string& struct_name);
 
 }  // namespace rtd::ros2

@@ -26,7 +26,7 @@ constexpr std::uint64_t kRowBytes = 8;            // at least
 constexpr std::size_t kMostDescribed = 16 << 20;  // of definitions: topics of one type have copies of it
 constexpr int kStepInstructions = 1000;           // of SQLite's machine between two calls of the progress handler
 
-/// Bytes of a file beside a database; 0: there is none. Throws Db3Error for what is not a regular file, which SQLite
+/// Bytes of a file next to a database; 0: there is none. Throws Db3Error for what is not a regular file, which SQLite
 /// would wait for.
 std::uint64_t size_beside(const fs::path& path, const char* suffix) {
   try {
@@ -37,8 +37,8 @@ std::uint64_t size_beside(const fs::path& path, const char* suffix) {
   }
 }
 
-/// Without a log beside it the file is complete in itself: "immutable" reads it without locks, so also in a folder that
-/// is read-only.
+/// Without a log next to it the file is complete in itself: "immutable" reads it without locks, so also in a folder
+/// that is read-only.
 std::string uri_of(const fs::path& path) {
   std::string uri = "file:";
   for (const char c : fs::absolute(path).string()) {

@@ -35,7 +35,7 @@ struct Db3Place {
 
 /// Reads a rosbag2 file of the storage plugin sqlite3, all versions of its schema: of the tables `topics` and
 /// `messages` only the columns that they share are required. The file is never written; a file that was not closed is
-/// read with the -wal beside it. Memory and time are bounded by the size of the file. Not thread-safe.
+/// read with the -wal next to it. Memory and time are bounded by the size of the file. Not thread-safe.
 class Db3Reader {
  public:
   /// Throws Db3Error: unreadable, no SQLite file, without these tables. Damage further on is listed by damages().

@@ -8,7 +8,7 @@
 
 namespace rtd::service {
 
-/// What rtd-camera's heartbeat says of the frame of its images, so that all services name the one that their driver
+/// What rtd-camera's heartbeat says about the frame of its images, so that all services name the one that their driver
 /// does. `frame_id`: as it is on the wire; one that a heartbeat cannot carry becomes the usual one. Returns the name.
 std::string announce_camera_frame(Heartbeat& heartbeat, const bus::Bus& bus, const std::string& frame_id);
 

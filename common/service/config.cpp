@@ -26,6 +26,7 @@ struct ConfigBinder::Setting {
   std::function<bool(const std::string& yaml)> read;                ///< false: this is not what is wanted
   std::function<bool(const std::vector<std::string>& words)> take;  ///< the same for words of a command line
   std::function<std::string()> print;
+  std::string former = {};             ///< key of the last version
   std::string type = {};               ///< of its value, as help shows it: "INT"
   std::string flags = {}, group = {};  ///< of its option; "": none
   bool is_switch = false, is_list = false;
@@ -178,6 +179,11 @@ void ConfigBinder::Bound::option(std::string_view flags, std::string_view group)
   setting_.group = group;
 }
 
+ConfigBinder::Bound ConfigBinder::Bound::formerly(std::string_view key) {
+  setting_.former = key;
+  return *this;
+}
+
 ConfigBinder::Bound ConfigBinder::field(std::string_view key, bool& value, std::string_view help) {
   return add(key, value, "true or false", anything<bool>, help);
 }
@@ -253,7 +259,8 @@ void ConfigBinder::nest(std::string_view prefix, const std::function<void(Config
 }
 
 ConfigBinder::Setting* ConfigBinder::find(const std::string& key) {
-  const auto setting = std::ranges::find(settings_, key, &Setting::key);
+  const auto setting = std::ranges::find_if(
+      settings_, [&](const Setting& known) { return known.key == key || (known.former == key && !key.empty()); });
   return setting == settings_.end() ? nullptr : &*setting;
 }
 

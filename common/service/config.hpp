@@ -66,6 +66,8 @@ class ConfigBinder {
     /// It is an option of the command line, too. `flags`: "--map", or several such as "-r,--rate"; without dashes it is
     /// the argument without a name. `group`: under which `rtd run --help` lists it.
     void option(std::string_view flags, std::string_view group = "");
+    /// The full key that it had in the last version, which is still read.
+    Bound formerly(std::string_view key);
 
    private:
     Setting& setting_;
@@ -126,7 +128,7 @@ class ConfigBinder {
   bool is_of_others(const std::string& key, const std::vector<std::string>& other_sections) const;
 
   std::string prefix_;
-  std::vector<Setting> settings_;  ///< those of a section beside each other
+  std::vector<Setting> settings_;  ///< those of a section next to each other
   std::vector<std::string> in_part_;
 };
 

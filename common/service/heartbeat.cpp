@@ -117,7 +117,7 @@ void Heartbeat::loop() {
   for (int turn = 0; !ended_.wait_for(kLookPeriod); ++turn) {
     const std::int64_t now_ns = monotonic_ns();
     looked_ns_ = now_ns;
-    forgive_standstill(now_ns);
+    exclude_standstill(now_ns);
     forget_silent(now_ns);
     bool changed = check_peers();
     changed = check_inputs() || changed;
@@ -128,14 +128,14 @@ void Heartbeat::loop() {
 }
 
 /// No service was silent, and no worker stuck, while this whole process stood still.
-void Heartbeat::forgive_standstill(std::int64_t now_ns) {
+void Heartbeat::exclude_standstill(std::int64_t now_ns) {
   const std::int64_t stood_still_ns = standstill_.look(now_ns);
   if (stood_still_ns == 0) return;
   SPDLOG_WARN("event=stood_still for_ms={} cause=\"stopped, paused, or no processor time\"",
               stood_still_ns / 1'000'000);
   const std::lock_guard lock(mutex_);
-  progress_.forgive(stood_still_ns);
-  peers_.forgive(stood_still_ns);
+  progress_.exclude_pause(stood_still_ns);
+  peers_.exclude_pause(stood_still_ns);
 }
 
 void Heartbeat::forget_silent(std::int64_t now_ns) {
@@ -177,13 +177,11 @@ void Heartbeat::set_word(const std::string& prefix, const std::string& word) {
 
 /// Under the lock.
 void Heartbeat::set(const msg::Metric& metric) {
-  const auto found = std::find_if(own_.metrics.begin(), own_.metrics.end(),
-                                  [&](const msg::Metric& own) { return own.name == metric.name; });
-  if (found == own_.metrics.end()) {
+  const auto found = std::ranges::find(own_.metrics, metric.name, &msg::Metric::name);
+  if (found == own_.metrics.end())
     own_.metrics.push_back(metric);
-  } else {
+  else
     found->value = metric.value;
-  }
 }
 
 void Heartbeat::receive(const msg::ServiceStatus& status, const bus::WriterId& writer) {
@@ -207,9 +205,9 @@ bool Heartbeat::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   return true;
 }
 
-void Heartbeat::believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
+void Heartbeat::accept_only_from(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
   const std::lock_guard lock(mutex_);
-  peers_.believe_only(service, std::move(writers));
+  peers_.accept_only_from(service, std::move(writers));
 }
 
 void Heartbeat::report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer) {

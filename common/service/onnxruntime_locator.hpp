@@ -10,8 +10,8 @@
 
 namespace rtd::service {
 
-/// Where the library of ONNX Runtime is looked for, in this order: where `deploy/setup.sh --onnxruntime` puts it beside
-/// this build, /usr/local/lib/rtd-slam, then the folders of the system's libraries.
+/// Where the library of ONNX Runtime is looked for, in this order: where `deploy/setup.sh --onnxruntime` puts it next
+/// to this build, /usr/local/lib/rtd-slam, then the folders of the system's libraries.
 std::vector<std::filesystem::path> onnxruntime_folders();
 
 /// The path of ONNX Runtime's library: the value of RTD_ONNXRUNTIME as it is, else the first libonnxruntime.so or, of

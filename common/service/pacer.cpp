@@ -73,7 +73,7 @@ void Pacer::advance_timeline(std::int64_t stamp_ns, PaceDecision& decision) {
 
 PaceDecision Pacer::by_window(std::size_t room) {
   const std::int64_t now_ns = now_ns_();
-  forgive_standstill(now_ns);
+  exclude_standstill(now_ns);
   if (in_flight_.size() < room) return {};
   if (now_ns - last_progress_ns_ >= config_.result_timeout_ns) return {.action = PaceAction::kGiveUp};
   if (now_ns - last_sent_ns_ >= config_.resend_after_ns) return {.action = PaceAction::kResend};
@@ -83,7 +83,7 @@ PaceDecision Pacer::by_window(std::size_t room) {
 }
 
 /// A process that was stopped for longer than it ever waits has missed no result.
-void Pacer::forgive_standstill(std::int64_t now_ns) {
+void Pacer::exclude_standstill(std::int64_t now_ns) {
   const std::int64_t away_ns = asked_ns_ ? now_ns - *asked_ns_ : 0;
   asked_ns_ = now_ns;
   if (away_ns <= 2 * config_.resend_after_ns) return;

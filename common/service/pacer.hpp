@@ -73,7 +73,7 @@ class Pacer {
   PaceDecision by_stamp(std::int64_t stamp_ns, std::size_t newer_waiting);
   PaceDecision by_window(std::size_t room);
   void advance_timeline(std::int64_t stamp_ns, PaceDecision& decision);
-  void forgive_standstill(std::int64_t now_ns);
+  void exclude_standstill(std::int64_t now_ns);
 
   PacerConfig config_;
   std::function<std::int64_t()> now_ns_;

@@ -120,7 +120,7 @@ std::string full_name(const std::string& service, const std::string& robot) {
 
 }  // namespace
 
-Parameters::Parameters(std::string service, Heartbeat& heartbeat, std::shared_ptr<bus::CommandBook> commands)
+Parameters::Parameters(std::string service, Heartbeat& heartbeat, std::shared_ptr<bus::CommandRegistry> commands)
     : service_(std::move(service)), heartbeat_(heartbeat), commands_(std::move(commands)) {}
 
 const Setting* Parameters::find(const std::string& name) const {

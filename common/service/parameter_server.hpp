@@ -22,7 +22,7 @@ inline constexpr std::size_t kMaxParameters = 16;
 /// refused: the reply to one that sets says so, that to one that asks is empty. Thread-safe.
 class Parameters {
  public:
-  Parameters(std::string service, Heartbeat& heartbeat, std::shared_ptr<bus::CommandBook> commands);
+  Parameters(std::string service, Heartbeat& heartbeat, std::shared_ptr<bus::CommandRegistry> commands);
 
   msg::ListParametersReply list(const msg::ListParametersRequest& asked) const;
   msg::GetParametersReply get(const msg::ParameterNames& asked) const;
@@ -41,7 +41,7 @@ class Parameters {
 
   const std::string service_;
   Heartbeat& heartbeat_;
-  const std::shared_ptr<bus::CommandBook> commands_;
+  const std::shared_ptr<bus::CommandRegistry> commands_;
 };
 
 /// Offers the six services of a node's parameters while it lives.

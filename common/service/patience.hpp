@@ -13,7 +13,7 @@ namespace rtd::service {
 struct Patience {
   int stuck_ms;   ///< a worker without progress says that it is stuck
   int silent_ms;  ///< a process without a sign of life is killed and restarted by the launcher
-  int answer_ms;  ///< for what a living service says of one frame; in realtime none is waited for
+  int answer_ms;  ///< for what a living service says about one frame; in realtime none is waited for
   int result_ms;  ///< without any result, after which the run has failed; in realtime none is waited for
 };
 

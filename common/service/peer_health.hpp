@@ -62,7 +62,7 @@ class ProgressWatch {
   void tick(std::int64_t now_ns) { ticked_ns_ = now_ns; }
   void idle() { ticked_ns_ = 0; }  ///< until the next tick
   /// The whole process stood still for so long.
-  void forgive(std::int64_t stood_still_ns) {
+  void exclude_pause(std::int64_t stood_still_ns) {
     if (ticked_ns_ > 0) ticked_ns_ += stood_still_ns;
   }
   /// How long the worker has been stuck; 0: it continues, or has not begun.

@@ -22,9 +22,10 @@ bool is_ours(const std::string& name) {
 
 }  // namespace
 
-ProcessBook::ProcessBook() : ProcessBook([](std::int64_t pid) { return process_state(pid); }, monotonic_ns) {}
+ProcessRegistry::ProcessRegistry()
+    : ProcessRegistry([](std::int64_t pid) { return process_state(pid); }, monotonic_ns) {}
 
-void ProcessBook::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
+void ProcessRegistry::note(const msg::ServiceStatus& status, const bus::WriterId& writer) {
   constexpr std::size_t kMax = 64;
   const bus::ParticipantId connection = bus::participant_of(writer);
   const bool here = find_metric(status, metric::kHostId) == PeerClocks::this_host_id();
@@ -35,7 +36,7 @@ void ProcessBook::note(const msg::ServiceStatus& status, const bus::WriterId& wr
   entries_[connection] = {status.pid, clock_(), here, status.state == msg::ServiceState::kFinished};
 }
 
-bool ProcessBook::gone(const bus::ParticipantId& connection) const {
+bool ProcessRegistry::gone(const bus::ParticipantId& connection) const {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(connection);
   if (found == entries_.end()) return false;
@@ -64,7 +65,7 @@ bool PeerTable::note(const msg::ServiceStatus& status, const bus::WriterId& writ
   return true;
 }
 
-void PeerTable::believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
+void PeerTable::accept_only_from(const std::string& service, std::weak_ptr<const bus::SourceGate> writers) {
   writers_of_[service] = std::move(writers);
 }
 
@@ -111,7 +112,7 @@ std::vector<std::string> PeerTable::forget_silent(std::int64_t now_ns) {
   return gone;
 }
 
-void PeerTable::forgive(std::int64_t stood_still_ns) {
+void PeerTable::exclude_pause(std::int64_t stood_still_ns) {
   for (auto& [name, peer] : peers_) peer.received_ns += stood_still_ns;
 }
 

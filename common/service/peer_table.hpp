@@ -20,13 +20,13 @@ namespace rtd::service {
 
 /// Which processes are behind the connections of a domain, by their heartbeats. A connection speaks for itself only: a
 /// heartbeat is noted under the id of the connection that sent it. Holds the 64 newest. Thread-safe.
-class ProcessBook {
+class ProcessRegistry {
  public:
   using Look = std::function<ProcessState(std::int64_t pid)>;
   using Clock = std::function<std::int64_t()>;
-  ProcessBook();
+  ProcessRegistry();
   /// `clock`: monotonic, ns.
-  ProcessBook(Look look, Clock clock) : look_(std::move(look)), clock_(std::move(clock)) {}
+  ProcessRegistry(Look look, Clock clock) : look_(std::move(look)), clock_(std::move(clock)) {}
 
   void note(const msg::ServiceStatus& status, const bus::WriterId& writer);
   /// Whether it said that it ends, or its process on this host is no more and its heartbeats have ceased. False for one
@@ -69,11 +69,11 @@ class PeerTable {
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer, std::int64_t now_ns);
   /// From now on heartbeats of that service count only while a writer of their connection is matched behind the gate.
   /// Once the gate is gone, they count from every connection again.
-  void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
+  void accept_only_from(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// Forgets who has been silent for long; the names that go.
   std::vector<std::string> forget_silent(std::int64_t now_ns);
   /// This process stood still for so long: no service was silent meanwhile.
-  void forgive(std::int64_t stood_still_ns);
+  void exclude_pause(std::int64_t stood_still_ns);
 
   std::map<std::string, Peer>& peers() { return peers_; }
   const std::map<std::string, Peer>& peers() const { return peers_; }

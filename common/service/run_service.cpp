@@ -21,8 +21,8 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/host/host_checks.hpp"
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/log.hpp"
@@ -146,7 +146,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   const std::int64_t begin_ns = monotonic_ns();
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
-  std::jthread cleaner;     // beside the work: joining the bus is what a restarted service must be quick at
+  std::jthread cleaner;     // next to the work: joining the bus is what a restarted service must be quick at
   if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   for (const bus::EnvironmentSetting& setting : options.environment) log_setting(setting);
@@ -166,7 +166,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
     const SystemdLink systemd([&heartbeat] { return heartbeat.work(); });
     Trace trace(process_environment()(kTraceVariable).value_or(""), definition.name);
     std::optional<ParameterServer> parameters;
-    std::jthread offering;  // beside the work, too; of a service that several processes may be, none is the node
+    std::jthread offering;  // next to the work, too; of a service that several processes may be, none is the node
     if (shared.empty() && !options.security.enabled())
       offering = std::jthread([&] { offer_parameters(parameters, *bus, definition.name, heartbeat); });
     const auto bound_end = [&](int exit_code) {

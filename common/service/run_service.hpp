@@ -26,7 +26,7 @@ struct ServiceDefinition {
   std::string description;  ///< one line for --help
   std::function<void(ConfigBinder&)> bind;
   std::function<ExitCode(Runtime&)> run;  ///< returns when stop is requested or the work is done
-  /// What the command line has beside the options of the settings. Keys that it sets go to the list.
+  /// What the command line has besides the options of the settings. Keys that it sets go to the list.
   std::function<void(CLI::App&, std::vector<GivenOption>&)> add_options = {};
   /// Called once the configuration is loaded. The name of its heartbeat where several processes of it may run in one
   /// domain; "": the usual one, `name`, which belongs to one process.

@@ -71,8 +71,8 @@ class Heartbeat {
   std::function<bool(const bus::ParticipantId&)> process_gone() const {
     return [this](const bus::ParticipantId& connection) { return processes_.gone(connection); };
   }
-  /// As PeerTable::believe_only().
-  void believe_only(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
+  /// As PeerTable::accept_only_from().
+  void accept_only_from(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// `callback` runs on a bus thread for every heartbeat of another service. Waits for a running call: afterwards the
   /// earlier callback is not used any more. Not to be called from the callback itself.
   void on_status(std::function<void(const msg::ServiceStatus&)> callback);
@@ -95,7 +95,7 @@ class Heartbeat {
   void receive(const msg::ServiceStatus& status, const bus::WriterId& writer);
   bool note(const msg::ServiceStatus& status, const bus::WriterId& writer);
   void report_second_instance(const msg::ServiceStatus& second, const bus::WriterId& writer);
-  void forgive_standstill(std::int64_t now_ns);
+  void exclude_standstill(std::int64_t now_ns);
   void forget_silent(std::int64_t now_ns);
   const Peer* find(const std::string& service) const;
   void loop();
@@ -108,7 +108,7 @@ class Heartbeat {
   const std::string own_name_;
   const std::int64_t started_ns_;
   std::atomic<std::int64_t> looked_ns_;  ///< when the last turn of the heartbeat's thread began
-  ProcessBook processes_;
+  ProcessRegistry processes_;
   mutable std::mutex mutex_;
   PeerClocks clocks_;
   msg::ServiceStatus own_;

@@ -58,15 +58,16 @@ std::shared_ptr<bus::SourceGate> follow_source(const std::string& service, Proce
   options.silence_ns = silence_ns;
   options.clock = monotonic_ns;
   options.gone = std::move(gone);
-  options.report = [log = std::make_shared<SourceLog>(service)](
-                       Event event, const bus::ParticipantId& source,
-                       const bus::ParticipantId& other) { log->report(event, source, other); };
+  options.report = [log = std::make_shared<SourceLog>(service)](Event event, const bus::ParticipantId& source,
+                                                                const bus::ParticipantId& other) {
+    log->report(event, source, other);
+  };
   return std::make_shared<bus::SourceGate>(std::move(options));
 }
 
 std::shared_ptr<bus::SourceGate> follow_source(const std::string& service, Runtime& runtime, std::int64_t silence_ns) {
   auto gate = follow_source(service, runtime.heartbeat.process_gone(), silence_ns);
-  if (runtime.bus_options.security.enabled()) runtime.heartbeat.believe_only(service, gate);
+  if (runtime.bus_options.security.enabled()) runtime.heartbeat.accept_only_from(service, gate);
   return gate;
 }
 

@@ -11,7 +11,7 @@
 
 namespace rtd::service {
 
-/// Whether the process of a connection is known to have ended: Heartbeat::gone() or ProcessBook::gone().
+/// Whether the process of a connection is known to have ended: Heartbeat::gone() or ProcessRegistry::gone().
 using ProcessGone = std::function<bool(const bus::ParticipantId&)>;
 
 /// A gate for the topics that one service writes, e.g. "camera": the first one is followed, others are refused and

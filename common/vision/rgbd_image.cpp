@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "common/msg/rgbd_frame.hpp"
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::vision {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// What a CameraService notes and reports of its source.
+/// What a CameraService notes and reports of its source, and where it continues after an earlier process.
+#include <sstream>
+
 #include "common/io/atomic_file.hpp"
 #include "common/service/metric_names.hpp"
 #include "services/camera/camera_service.hpp"
@@ -12,6 +14,45 @@ constexpr std::size_t kOffsetsToLog = 30;  // frames
 constexpr std::uint64_t kDepthToLog = 11;  // frames, of which two are looked at
 
 }  // namespace
+
+std::optional<CameraService::ResumePoint> CameraService::resume_point_of(const Config& config) {
+  if (config.resume_after.empty()) return std::nullopt;
+  std::istringstream fields(config.resume_after);
+  ResumePoint point;
+  char first = 0, second = 0;
+  fields >> point.seq >> first >> point.stamp_ns >> second >> point.published_ns;
+  if (fields.fail() || !fields.eof() || first != ',' || second != ',')
+    throw service::ConfigError("camera.resume_after: '" + config.resume_after + "' is not SEQ,STAMP_NS,PUBLISHED_NS");
+  return point;
+}
+
+void CameraService::log_opened() const {
+  const SourceInfo& info = source_->info();
+  const auto& camera = info.camera.parameters();
+  SPDLOG_INFO("event=source_opened uri={} frames={} width={} height={} fx={} fps={}", info.uri, info.frames,
+              camera.width, camera.height, camera.fx, info.fps);
+  for (const std::string& note : info.notes) SPDLOG_INFO("event=source_note text=\"{}\"", note);
+  for (const std::string& remark : info.remarks) SPDLOG_WARN("event=source_remark cause=\"{}\"", remark);
+}
+
+void CameraService::log_skipped(const ReadItem& item) {
+  for (const SkippedInput& skipped : item.skipped) {
+    if (!skip_log_.pass()) continue;
+    SPDLOG_WARN("event=input_skipped reason={} total={} detail=\"{}\"", to_string(skipped.reason),
+                item.counters.skipped_total(), skipped.detail);
+  }
+}
+
+void CameraService::log_timeline(const service::PaceDecision& decision, std::uint64_t frame) const {
+  if (decision.cut_gap_ns > 0) {
+    SPDLOG_WARN("event=gap_cut frame={} cut_s={:.3f} played_s={:g}", frame,
+                static_cast<double>(decision.cut_gap_ns) * 1e-9, config_.max_gap_s);
+  }
+  if (decision.shifted_ns > 0) {
+    SPDLOG_WARN("event=timeline_shifted frame={} by_s={:.3f} cause=\"the source is slower than its stamps\"", frame,
+                static_cast<double>(decision.shifted_ns) * 1e-9);
+  }
+}
 
 void CameraService::note_depth_offset(const SourceFrame& frame) {
   if (!frame.depth_after_color_ns) return;

@@ -19,7 +19,6 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/camera/live_camera.hpp"
-#include "services/camera/source_log.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -44,13 +43,6 @@ std::shared_ptr<FrameSource> open_source(const ServiceConfig& config, const bus:
   } catch (const SourceError& error) {
     throw service::ConfigError(error.what());
   }
-}
-
-std::optional<ResumePoint> resume_point_of(const ServiceConfig& config) {
-  const std::optional<ResumePoint> point = parse_resume_point(config.resume_after);
-  if (!point && !config.resume_after.empty())
-    throw service::ConfigError("camera.resume_after: '" + config.resume_after + "' is not SEQ,STAMP_NS,PUBLISHED_NS");
-  return point;
 }
 
 service::PacerConfig to_pacer_config(const ServiceConfig& config, service::Pace pace, const SourceInfo& source) {
@@ -106,7 +98,7 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
                     MotionFrames{runtime.bus.frame(msg::kCameraFrame), runtime.bus.frame("wheel_odom"),
                                  runtime.bus.frame("base_link")});
   }
-  if (!config_.beside.empty()) open_beside();
+  if (!config_.sensor_topics.empty()) open_auxiliary();
   if (!source_->info().live) open_publisher();
   const auto none = std::find(config_.wait_for.rbegin(), config_.wait_for.rend(), "none");  // empties the list
   config_.wait_for.erase(config_.wait_for.begin(), none.base());
@@ -118,11 +110,11 @@ CameraService::CameraService(const Config& config, service::Runtime& runtime)
   });
 }
 
-void CameraService::open_beside() {
+void CameraService::open_auxiliary() {
   try {
-    beside_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.beside);
+    auxiliary_.emplace(runtime_.bus_options, runtime_.bus, config_.source, config_.sensor_topics);
   } catch (const SourceError& error) {
-    throw service::ConfigError(std::string("camera.beside: ") + error.what());
+    throw service::ConfigError(std::string("camera.sensor_topics: ") + error.what());
   }
 }
 
@@ -149,7 +141,7 @@ CameraService::Outcome CameraService::open() {
     return fail(fmt::format("source {}: {}", config_.source, error.what()));
   }
   if (source_->info().live) open_publisher();
-  log_opened(source_->info());
+  log_opened();
   return Outcome::kDone;
 }
 
@@ -163,7 +155,7 @@ void CameraService::open_publisher() {
 void CameraService::report_wait(const std::string& what) {
   if (what.empty()) {
     if (playing_) runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
-    SPDLOG_INFO("event=camera_gives_frames");
+    SPDLOG_INFO("event=camera_streaming");
     return;
   }
   runtime_.heartbeat.set_state(playing_ ? msg::ServiceState::kDegraded : msg::ServiceState::kStarting, what);
@@ -219,7 +211,7 @@ void CameraService::resume() {
     source_->pass_over(resume_->stamp_ns + 1);
     passed_ = source_->counters();
     left_out_.resume(frames_in_, passed_);
-    if (beside_) beside_->pass_over(resume_->stamp_ns);
+    if (auxiliary_) auxiliary_->pass_over(resume_->stamp_ns);
   }
   if (realtime_ && !source_->info().live) {
     const std::int64_t due_ns = resume_->stamp_ns + service::monotonic_ns() - resume_->published_ns;
@@ -237,7 +229,7 @@ CameraService::Outcome CameraService::play(ReadAhead& frames) {
     if (!item) break;
     counters_ = item->counters;
     left_out_.add(*item);
-    log_skipped(*item, skip_log_);
+    log_skipped(*item);
     if (!item->error.empty()) return fail("the source failed: " + item->error);
     frames_in_ += item->passed_over;
     passed_over_ += item->passed_over;
@@ -260,7 +252,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
     take_results();
     const service::PaceDecision decision =
         one_by_one_ && !realtime_ ? pacer_.drain() : pacer_.next(frame.image.stamp_ns, frames.waiting());
-    log_timeline(decision, frame.image.seq, config_.max_gap_s);
+    log_timeline(decision, frame.image.seq);
     if (decision.action == service::PaceAction::kSkipLate && late_log_.pass())
       SPDLOG_WARN("event=frame_late frame={} total={}", frame.image.seq, late());
     if (decision.late_ns > 0) frames.pass_over(frame.image.stamp_ns + decision.late_ns);
@@ -269,7 +261,7 @@ CameraService::Outcome CameraService::handle(SourceFrame frame, ReadAhead& frame
       runtime_.heartbeat.tick();
       const std::int64_t begin_ns = service::monotonic_ns();
       if (motion_) motion_->publish(frame, resume_ ? resume_->stamp_ns : std::numeric_limits<std::int64_t>::min());
-      if (beside_) beside_->publish(frame);
+      if (auxiliary_) auxiliary_->publish(frame);
       send(frame.image);
       runtime_.trace.span("publish", begin_ns, service::monotonic_ns(), frame.image.seq);
       send_truth(frame);

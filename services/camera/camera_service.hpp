@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "common/camera/depth_figures.hpp"
-#include "common/camera/depth_offsets.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -23,7 +22,6 @@
 #include "common/service/topic_source.hpp"
 #include "services/camera/core/left_out.hpp"
 #include "services/camera/core/read_ahead.hpp"
-#include "services/camera/core/resume_point.hpp"
 #include "services/camera/frame_publisher.hpp"
 
 namespace CLI {
@@ -44,7 +42,7 @@ struct ServiceConfig {
   double max_gap_s = 1.0;
   std::vector<std::string> wait_for = {"filter", "slam"};
   std::string groundtruth_out;
-  std::vector<std::string> beside;
+  std::vector<std::string> sensor_topics;
   int source_id = 0;
   std::string resume_after;
 
@@ -64,10 +62,11 @@ struct ServiceConfig {
     binder.field("groundtruth_out", groundtruth_out, "file that gets the ground truth in TUM format, empty = none")
         .option("--groundtruth-out");
     binder
-        .field("beside", beside,
+        .field("sensor_topics", sensor_topics,
                "topics of a recording that are published with its frames: an IMU, wheels, /tf_static; rtd run fills in "
                "those of --imu, --wheel-odometry and --camera-in-base tf")
-        .option("--beside");
+        .formerly("camera.beside")
+        .option("--sensor-topics,--beside");
     binder
         .field("source_id", source_id, {0, 2147483647},
                "of the frames, by which others know a camera that is started again; 0: a random one")
@@ -101,7 +100,7 @@ class CameraService {
 
   /// Waits for the first frame of a running camera.
   Outcome open();
-  void open_beside();
+  void open_auxiliary();
   /// Once the size of the images is known.
   void open_publisher();
   void report_wait(const std::string& what);
@@ -122,6 +121,11 @@ class CameraService {
   void send(const vision::RgbdImage& image);
   void send_truth(const SourceFrame& frame);
   void resend();
+  void log_opened() const;
+  /// What the source left out.
+  void log_skipped(const ReadItem& item);
+  /// Pauses that were cut, and a source slower than its stamps.
+  void log_timeline(const service::PaceDecision& decision, std::uint64_t frame) const;
   void note_depth_offset(const SourceFrame& frame);
   void note_depth(const SourceFrame& frame);
   void report_counters();
@@ -140,8 +144,14 @@ class CameraService {
   std::shared_ptr<concurrency::BoundedQueue<bool>> changes_;  ///< a service became ready or a reader matched
   FramePublisher publisher_;
   bus::Writer<msg::PoseStamped> truth_;
-  std::optional<MotionPublisher> motion_;  ///< of sources that have an IMU or wheels
-  std::optional<BesidePublisher> beside_;  ///< of a recording that has them
+  std::optional<MotionPublisher> motion_;        ///< of sources that have an IMU or wheels
+  std::optional<AuxiliaryPublisher> auxiliary_;  ///< of a recording that has them
+  /// The last frame that an earlier process of the camera gave: this one continues behind it.
+  struct ResumePoint {
+    std::uint64_t seq = 0;
+    std::int64_t stamp_ns = 0, published_ns = 0;  ///< published_ns: CLOCK_MONOTONIC
+  };
+  static std::optional<ResumePoint> resume_point_of(const Config& config);
   const std::optional<ResumePoint> resume_;
   const std::shared_ptr<bus::SourceGate> slam_;
   bus::Reader<msg::TrackingResult> tracking_;

@@ -130,7 +130,7 @@ bool FramePublisher::publish(const vision::RgbdImage& image) {
 
 namespace {
 
-constexpr int kMotionDepth = 64;  // of samples: a camera at 4 Hz
+constexpr int kMotionDepth = 64;                                       // of samples: a camera at 4 Hz
 constexpr auto kFoundLate = bus::RawQos::Durability::kTransientLocal;  // slam may find it after the first frame
 
 std::unique_ptr<bus::RawWriter> motion_writer(bus::RawBus& bus, const char* topic, const char* type) {
@@ -181,11 +181,12 @@ void MotionPublisher::publish(const SourceFrame& frame, std::int64_t after_ns) {
   }
 }
 
-BesidePublisher::BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
-                                 const std::vector<std::string>& topics)
+AuxiliaryPublisher::AuxiliaryPublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
+                                       const std::vector<std::string>& topics)
     : bus_(bus::connect_raw(options)) {
   std::unique_ptr<recordings::Reader> recording = recording_of(source_uri);
-  if (!recording) throw SourceError("source " + source_uri + ": only a recording has topics beside its frames");
+  if (!recording)
+    throw SourceError("source " + source_uri + ": only a recording has other topics than those of its frames");
   std::vector<std::string> played;
   for (const std::string& topic : topics) {
     if (topic == ros2::ros_topic(bus::topics::kTfStatic.name)) {
@@ -195,10 +196,10 @@ BesidePublisher::BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, 
       played.push_back(open(*recording, topic));
     }
   }
-  messages_ = std::make_unique<BesideFrames>(std::move(recording), played);
+  messages_ = std::make_unique<AuxiliaryTopics>(std::move(recording), played);
 }
 
-std::string BesidePublisher::open(const recordings::Reader& recording, const std::string& topic) {
+std::string AuxiliaryPublisher::open(const recordings::Reader& recording, const std::string& topic) {
   constexpr int kDepth = 512;  // of samples: two seconds of an IMU
   const auto& all = recording.topics();
   const auto found = std::ranges::find_if(all, [&](const auto& t) { return ros2::ros_topic(t.name) == topic; });
@@ -215,7 +216,7 @@ std::string BesidePublisher::open(const recordings::Reader& recording, const std
   return found->name;
 }
 
-void BesidePublisher::publish(const SourceFrame& frame) {
+void AuxiliaryPublisher::publish(const SourceFrame& frame) {
   for (const recordings::RecordedMessage& message : messages_->until(frame.image.stamp_ns)) {
     writers_.at(message.topic)->write(std::as_bytes(std::span(message.bytes)));
   }

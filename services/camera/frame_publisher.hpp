@@ -19,7 +19,7 @@
 #include "common/camera/frame_source.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/msg/camera_frame.hpp"
-#include "services/camera/core/beside_frames.hpp"
+#include "services/camera/core/auxiliary_topics.hpp"
 
 namespace rtd::camera {
 
@@ -90,13 +90,13 @@ class MotionPublisher {
   std::unique_ptr<bus::RawWriter> imu_, wheels_;
 };
 
-/// Publishes the messages that a recording has beside its frames, as their topics are named in it. One thread.
-class BesidePublisher {
+/// Publishes messages of a recording with its frames, as their topics are named in it. One thread.
+class AuxiliaryPublisher {
  public:
   /// `topics`: ROS names; "/tf_static" stands for the transforms that last. Throws SourceError when the recording does
   /// not have one, or the source is none; BusError when the bus refuses.
-  BesidePublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
-                  const std::vector<std::string>& topics);
+  AuxiliaryPublisher(const bus::BusOptions& options, bus::Bus& bus, const std::string& source_uri,
+                     const std::vector<std::string>& topics);
   /// Before the frame, as MotionPublisher's.
   void publish(const SourceFrame& frame);
   /// Leaves out what belongs to the frames up to this stamp.
@@ -109,7 +109,7 @@ class BesidePublisher {
   std::shared_ptr<bus::RawBus> bus_;
   std::map<std::string, std::unique_ptr<bus::RawWriter>> writers_;  ///< by name in the recording
   bus::Writer<msg::TFMessage> transforms_;
-  std::unique_ptr<BesideFrames> messages_;
+  std::unique_ptr<AuxiliaryTopics> messages_;
 };
 
 /// Copies the rows packed and clears the rest of the `size` bytes of a message.

@@ -90,7 +90,7 @@ service::ExitCode FleetService::run() {
   return end == FleetPipeline::End::kClosed ? service::kOk : service::kRunFailed;
 }
 
-/// Beside the pipeline: opening and closing topics takes time.
+/// Next to the pipeline: opening and closing topics takes time.
 void FleetService::update_robots() {
   for (const std::string& robot : config_.robots) open_lane(robot);
   do {

@@ -8,7 +8,7 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
 #include "common/service/patience.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 

@@ -308,7 +308,7 @@ const service::LoadStep& FilterService::follow_load_step() {
 
 /// Since the last frame, or look for one.
 void FilterService::notice_standstill() {
-  constexpr std::int64_t kStandstillNs = 250'000'000;  // even beside many busy processes a thread runs in that time
+  constexpr std::int64_t kStandstillNs = 250'000'000;  // even next to many busy processes a thread runs in that time
   timespec used{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
   const std::int64_t now_ns = service::monotonic_ns(), ran_ns = used.tv_sec * 1'000'000'000 + used.tv_nsec;
@@ -352,7 +352,9 @@ void FilterService::report_state() {
   if (published_ == 0) {
     const bool ready = frame_reader_.matched() > 0 && writer_.matched() > 0 && tracking_reader_.matched() > 0 &&
                        keyframe_reader_.matched() > 0;
-    const char* const missing = !ready ? "waiting for a camera and slam" : detector_there() ? "" : "waits for a detector";
+    const char* const missing = !ready             ? "waiting for a camera and slam"
+                                : detector_there() ? ""
+                                                   : "waits for a detector";
     runtime_.heartbeat.set_state(*missing == '\0' ? msg::ServiceState::kReady : msg::ServiceState::kStarting, missing);
     return;
   }

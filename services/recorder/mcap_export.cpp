@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/camera/recording/recording_source.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/mcap/writer.hpp"

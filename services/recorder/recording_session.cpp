@@ -297,7 +297,7 @@ void RecordingSession::watch_disk() {
   }
 }
 
-/// Beside the files, unless another file has the name.
+/// Next to the files, unless another file has the name.
 void RecordingSession::write_metadata(const std::string& text) const {
   std::string cause = "it is not of this recording";
   try {

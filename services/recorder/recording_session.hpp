@@ -102,7 +102,7 @@ class RecordingSession {
   const ServiceConfig config_;
   service::Runtime& runtime_;
   const OutputFiles files_;
-  TopicBook book_;
+  TopicRegistry book_;
   MessageQueue queue_;
   std::optional<SyncThread> sync_;
   std::optional<Recording> recording_;

@@ -21,7 +21,8 @@ std::string key_of(const bus::RawTopic& topic) {
 
 }  // namespace
 
-TopicReaders::TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicBook& book, MessageQueue& queue)
+TopicReaders::TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicRegistry& book,
+                           MessageQueue& queue)
     : bus_(bus), filter_(std::move(filter)), in_place_(in_place), book_(book), queue_(queue) {
   bus_.watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { on_writer(writer, change); });
 }

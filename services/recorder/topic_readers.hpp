@@ -14,7 +14,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "common/service/log.hpp"
 #include "services/recorder/core/message_queue.hpp"
-#include "services/recorder/core/topic_book.hpp"
+#include "services/recorder/core/topic_registry.hpp"
 
 namespace rtd::recorder {
 
@@ -28,14 +28,14 @@ namespace rtd::recorder {
 /// type before the first message.
 class TopicReaders {
  public:
-  TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicBook& book, MessageQueue& queue);
+  TopicReaders(bus::RawBus& bus, TopicFilter filter, bool in_place, TopicRegistry& book, MessageQueue& queue);
   ~TopicReaders() { stop(); }
   /// Afterwards nothing is queued.
   void stop();
   /// Subscribes to topics that have waited too long for the text of their type.
   void tick(std::int64_t now_ns);
   bool any() const;
-  /// Every known writer is matched with a reader of ours.
+  /// Every known writer is matched with one of our readers.
   bool settled() const;
 
  private:
@@ -64,7 +64,7 @@ class TopicReaders {
   bus::RawBus& bus_;
   const TopicFilter filter_;
   const bool in_place_;
-  TopicBook& book_;
+  TopicRegistry& book_;
   MessageQueue& queue_;
   mutable std::mutex mutex_;
   std::map<std::pair<std::size_t, Offer>, std::unique_ptr<bus::RawReader>> readers_;

@@ -14,7 +14,6 @@
 #include "common/ros2/names.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/ros2/type_description.hpp"
-#include "common/ros2/type_layout.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "common/service/monotonic_clock.hpp"

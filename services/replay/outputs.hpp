@@ -39,7 +39,7 @@ struct Output {
 class Outputs {
  public:
   /// A writer for each topic among `channels`, and one for the texts of their types, for recorders. Throws BusError;
-  /// ConfigError: two types on one topic, a type of ours with other fields than it has now.
+  /// ConfigError: two types on one topic, one of our types with other fields than it has now.
   Outputs(bus::RawBus& bus, const std::vector<const mcap::Channel*>& channels, const mcap::Summary& summary,
           OutputOptions options);
   ~Outputs();

@@ -20,8 +20,8 @@
 #include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "services/slam/camera_tree.hpp"
 #include "services/slam/core/place/vocabulary.hpp"
-#include "services/slam/robot_base.hpp"
 
 namespace rtd::slam {
 namespace {

@@ -47,8 +47,8 @@ void MapKeeper::loop() {
   concurrency::lower_thread_priority(kNicer);
   const std::chrono::milliseconds period(static_cast<std::int64_t>(config_.checkpoint_s * 1000));
   while (!ended_.wait_for(period)) {
-    Growth now, saved;
-    slam_.read_map([&](const Map& map) { now = {map.next_keyframe(), map.next_landmark()}; });
+    const Growth now = slam_.read_map([](const Map& map) { return Growth{map.next_keyframe(), map.next_landmark()}; });
+    Growth saved;
     {
       const std::lock_guard lock(file_mutex_);
       saved = saved_;
@@ -58,9 +58,7 @@ void MapKeeper::loop() {
 }
 
 bool MapKeeper::save(const char* occasion) {
-  bool empty = false;
-  slam_.read_map([&](const Map& map) { empty = map.empty(); });
-  if (empty) {
+  if (slam_.read_map([](const Map& map) { return map.empty(); })) {
     SPDLOG_WARN("event=map_not_saved file={} cause=\"nothing was mapped\"", config_.save);
     return true;
   }
@@ -89,8 +87,7 @@ bool MapKeeper::is_configured(const std::filesystem::path& path) const {
 SavedMap MapKeeper::write(const std::filesystem::path& path, const char* occasion, io::NamedBy named_by) {
   const std::lock_guard lock(file_mutex_);
   const std::int64_t start_ns = service::monotonic_ns();
-  MapSnapshot snapshot;
-  slam_.read_map([&](const Map& map) { snapshot = take_snapshot(map); });
+  const MapSnapshot snapshot = slam_.read_map([](const Map& map) { return take_snapshot(map); });
   const double copy_ms = ms_since(start_ns);
   if (snapshot.keyframes.empty()) throw std::runtime_error("nothing was mapped: there is no map to save");
   const std::uint64_t bytes = save_map_file(path, snapshot, named_by);

@@ -140,9 +140,7 @@ struct MapSize {
 };
 
 MapSize size_of(const SlamSystem& slam) {
-  MapSize size;
-  slam.read_map([&](const Map& map) { size = {map.keyframes().size(), map.landmark_count()}; });
-  return size;
+  return slam.read_map([](const Map& map) { return MapSize{map.keyframes().size(), map.landmark_count()}; });
 }
 
 std::string full_path(const std::string& path) {
@@ -213,7 +211,7 @@ bus::CommandAnswer SlamCommands::localize_only(bool on) {
                    : "mapping: the map grows again"};
 }
 
-/// Computed here, beside tracking.
+/// Computed here, next to tracking.
 bus::CommandAnswer SlamCommands::ask(const std::string& text) {
   const std::optional<Question> question = parse_question(text);
   if (!question) return {false, kQuestions};
@@ -227,9 +225,9 @@ bus::CommandAnswer SlamCommands::ask(const std::string& text) {
     if (evidence.frame == nullptr) return {false, "the last frame has no measured pose"};
     answer = answer_doubt(evidence);
   } else {
-    slam_.read_map([&](const Map& map) {
-      answer = question->about == Question::About::kLandmark ? answer_landmark(map, *question)
-                                                             : answer_keyframe(map, question->keyframe);
+    answer = slam_.read_map([&](const Map& map) {
+      return question->about == Question::About::kLandmark ? answer_landmark(map, *question)
+                                                           : answer_keyframe(map, question->keyframe);
     });
   }
   return answer.empty() ? bus::CommandAnswer{false, "the map has none there any more"}

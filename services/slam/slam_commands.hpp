@@ -14,7 +14,7 @@
 namespace rtd::slam {
 
 /// The commands slam/reset, slam/save_map, slam/load_map, slam/localize_only and slam/ask. Files are read and written
-/// beside tracking; what changes the system happens between two frames.
+/// next to tracking; what changes the system happens between two frames.
 class SlamCommands {
  public:
   /// Takes the map over in the worker's thread; the answer's text when the camera does not fit, else empty.

@@ -12,7 +12,6 @@
 #include "services/slam/camera_tree.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/robot_base.hpp"
 #include "services/slam/slam_messages.hpp"
 
 namespace rtd::slam {

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "common/bus/commands.hpp"
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/io/printable.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"

@@ -17,7 +17,6 @@
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/type_description.hpp"
-#include "common/ros2/type_layout.hpp"
 #include "common/ros_codec/message_definition.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"

@@ -9,7 +9,7 @@
 #include <iostream>
 #include <set>
 
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/robot.hpp"
 #include "common/ros2/names.hpp"
 #include "common/service/bus_config.hpp"

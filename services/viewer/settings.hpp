@@ -24,7 +24,7 @@ struct SettingCall {
 /// Empty: there is no such parameter, or not of this kind of value.
 std::optional<SettingCall> call_for(const foxglove::Parameter& parameter);
 
-/// What a replay among the services says of itself; empty without one.
+/// What a replay among the services says about itself; empty without one.
 std::optional<page::Playback> playback_of(const std::vector<page::ServiceLine>& services);
 
 }  // namespace rtd::viewer

@@ -180,7 +180,7 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
                  },
              .now_ms = wall_clock_ms}) {
   try {
-    server_.emplace(
+    server_ = WebServer::listen(
         web_options(config_, token_, look_token_), site_,
         [this](const std::string& subprotocol, Rights rights) { return open(subprotocol, rights); }, reports());
   } catch (const WebError& error) {

@@ -98,7 +98,7 @@ class ViewerService {
   FoxgloveHub foxglove_;
   PageHub page_;
   std::shared_ptr<bus::RawBus> raw_;
-  std::optional<WebServer> server_;
+  std::unique_ptr<WebServer> server_;
   std::optional<Mailbox> mailbox_;
   std::optional<TopicFeed> topics_;
   std::optional<CommandCaller> commands_;  ///< none: read-only

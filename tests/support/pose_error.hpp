@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/evaluation/core/integrity/nees.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 #include "services/slam/core/slam_system.hpp"
 
 namespace rtd::test_support {

@@ -65,7 +65,7 @@ std::string general(const BusOptions& options, const std::vector<std::string>& l
                      element("MaxMessageSize", bytes(datagram)) + element("FragmentSize", bytes(datagram - overhead)));
 }
 
-/// As Fast DDS of ours does: each process takes one of the ports that peers without a port are asked at, and asks at
+/// As our Fast DDS does: each process takes one of the ports that peers without a port are asked at, and asks at
 /// those of loopback.
 std::string discovery(const NetworkOptions& network, DiscoveryPort port) {
   std::string text = element("SPDPInterval", "500 ms") + element("LeaseDuration", "5 s");

@@ -2,14 +2,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/cyclonedds/endpoints.hpp"
 
+#include <dlfcn.h>
+#include <pthread.h>
+#include <sys/socket.h>
+
 #include <algorithm>
+#include <bit>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
-#include "common/bus/cyclonedds/sample_limits.hpp"
+#include "common/bus/fastdds/screening/rtps_screen.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {
@@ -73,6 +79,39 @@ Listener writer_listener(StatusReporter& reporter) {
 }
 
 }  // namespace
+
+SampleLimits& SampleLimits::of_process() {
+  static SampleLimits limits;
+  return limits;
+}
+
+void SampleLimits::note(const void* reader, const std::set<WriterId>& writers, std::size_t largest) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [writer, readers] : largest_)
+    if (!writers.contains(writer)) readers.erase(reader);
+  std::erase_if(largest_, [](const auto& entry) { return entry.second.empty(); });
+  for (const WriterId& writer : writers) largest_[writer][reader] = largest;
+}
+
+std::optional<std::size_t> SampleLimits::of(const WriterId& writer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = largest_.find(writer);
+  if (found == largest_.end()) return std::nullopt;
+  return std::ranges::max_element(found->second, {}, [](const auto& entry) { return entry.second; })->second;
+}
+
+void SampleLimits::mark_too_large(std::span<std::byte> datagram) const {
+  for (const SampleFragments& fragments : read_rtps_message(datagram).fragments) {
+    constexpr std::byte kPad{1};
+    const auto largest = of(std::bit_cast<WriterId>(fragments.writer));
+    if (!largest || fragments.sample_bytes <= *largest) continue;
+    const auto submessage = datagram.subspan(fragments.at);
+    if (fragments.first_fragment == 1)
+      std::ranges::fill(submessage.subspan(SampleFragments::kSizeBehind, 4), std::byte{0xff});
+    else
+      submessage[0] = kPad;
+  }
+}
 
 CycloneReader::CycloneReader(std::shared_ptr<Participant> participant, const SampleType& type, const std::string& topic,
                              Qos qos, Handlers handlers)

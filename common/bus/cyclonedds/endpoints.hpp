@@ -3,18 +3,44 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 
 #include "common/bus/cyclonedds/participant.hpp"
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_types.hpp"
+#include "common/bus/writer_id.hpp"
 
 namespace rtd::bus::cyclonedds {
+
+/// What the readers of this process take from each writer at most. Thread-safe.
+class SampleLimits {
+ public:
+  /// Cyclone has one largest sample for a domain. When a datagram arrives for it, the first fragment of a sample that
+  /// is too large for its own topic is made to say that the sample is larger than that: Cyclone then gives it up, as if
+  /// the writer had said that it is gone. Its other fragments become padding. Not with AddressSanitizer or
+  /// ThreadSanitizer, and not what is encrypted: that is refused when it is complete.
+  static SampleLimits& of_process();
+
+  /// A reader that takes so many bytes is matched with these writers, and no others.
+  void note(const void* reader, const std::set<WriterId>& writers, std::size_t largest);
+  /// The most that a reader takes; nothing: none is matched with that writer.
+  std::optional<std::size_t> of(const WriterId& writer) const;
+  /// Changes a datagram that has arrived.
+  void mark_too_large(std::span<std::byte> datagram) const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<WriterId, std::map<const void*, std::size_t>> largest_;  ///< by reader
+};
 
 /// One reader with a thread of its own: Cyclone's threads only wake it, so a slow callback holds up neither discovery
 /// nor other readers; what it cannot take in time, the keep-last history drops.

@@ -10,9 +10,9 @@
 
 #include "common/bus/cyclonedds/domain_config.hpp"
 #include "common/bus/cyclonedds/local_sockets.hpp"
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/security/keystore_layout.hpp"
 
 namespace rtd::bus::cyclonedds {

@@ -23,7 +23,7 @@ RawQos from_vendor(const dds_qos_t& qos);
 
 /// Announces the type's hash, for ROS 2 (common/ros2/type_description.hpp).
 void set_type_hash(dds_qos_t& qos, const std::string& dds_type);
-/// What an endpoint announces beside its policies.
+/// What an endpoint announces besides its policies.
 std::string user_data(const dds_qos_t& qos);
 
 /// DDS name of a policy, e.g. "RELIABILITY".

@@ -166,7 +166,7 @@ void keyhash(const ddsi_serdata*, ddsi_keyhash* hash, bool) {
 
 void free_sample(ddsi_serdata* sample) {
   // Cyclone's count orders this behind the others' use of the sample; a thread sanitizer, which does not see into that
-  // library, learns it from this load: they gave the sample back with an inline function, in code of ours.
+  // library, learns it from this load: they gave the sample back with an inline function, in our code.
   (void)__atomic_load_n(&sample->refc.v, __ATOMIC_ACQUIRE);
   delete &ours(sample);
 }

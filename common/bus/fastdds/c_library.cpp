@@ -66,7 +66,7 @@ double seconds_since(clockid_t clock, const timespec& time) {
 }
 
 /// From the start when the process is stopped again meanwhile.
-void be_patient() {
+void wait_for_announcements() {
   timespec since{};
   do {
     clock_gettime(CLOCK_MONOTONIC, &since);
@@ -187,7 +187,7 @@ int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, cl
   const int result = original(condition, mutex, clock, until);
   if (seconds_since(clock, *until) > kStoodStill_s && is_fast_dds(__builtin_return_address(0))) {
     pthread_mutex_unlock(mutex);
-    be_patient();
+    wait_for_announcements();
     pthread_mutex_lock(mutex);
   }
   return result;

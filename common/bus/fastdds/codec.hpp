@@ -29,7 +29,7 @@ class Codec {
   /// Bytes, CDR header included. A reader refuses larger ones.
   virtual std::size_t largest_sample() const = 0;
   virtual dds::TypeSupport create_type() const = 0;
-  /// Of a message that a writer of ours makes; 0: it passes on what others made.
+  /// Of a message that one of our writers makes; 0: it passes on what others made.
   virtual std::size_t sample_size(const void* /*message*/) const { return 0; }
   /// Thread-safe.
   virtual bool write(dds::DataWriter& writer, const void* message) const = 0;

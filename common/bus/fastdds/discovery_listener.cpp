@@ -20,7 +20,7 @@ void announce(dds::DomainParticipant& participant, std::uint64_t count) {
   dds::DomainParticipantQos qos = participant.get_qos();
   const auto& before = qos.user_data().getValue();
   std::string text(before.begin(), before.end());
-  text = text.substr(0, text.find("greeting=")) + "greeting=" + std::to_string(count) + ';';
+  text = text.substr(0, text.find("announcement=")) + "announcement=" + std::to_string(count) + ';';
   qos.user_data().setValue({text.begin(), text.end()});
   participant.set_qos(qos);
 }
@@ -35,11 +35,11 @@ void note_type(const Endpoint& endpoint, bool gone, TopicTypes& types) {
 
 }  // namespace
 
-void Reannouncer::start(dds::DomainParticipant& participant) {
+void AnnouncementRepeater::start(dds::DomainParticipant& participant) {
   thread_ = std::thread([this, &participant] { loop(participant); });
 }
 
-void Reannouncer::stop() {
+void AnnouncementRepeater::stop() {
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;
@@ -48,7 +48,7 @@ void Reannouncer::stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Reannouncer::announce_again() {
+void AnnouncementRepeater::announce_again() {
   {
     const std::lock_guard lock(mutex_);
     ++appeared_;
@@ -56,7 +56,7 @@ void Reannouncer::announce_again() {
   changed_.notify_all();
 }
 
-void Reannouncer::loop(dds::DomainParticipant& participant) {
+void AnnouncementRepeater::loop(dds::DomainParticipant& participant) {
   std::unique_lock lock(mutex_);
   std::uint64_t answered = 0, announcements = 0;
   const auto ended = [this] { return ended_; };
@@ -95,14 +95,14 @@ DiscoveryListener::DiscoveryListener(const BusOptions& options, EndpointRegistry
     : registry_(registry), security_(options.security.enabled() ? std::make_unique<SecurityWatch>(options) : nullptr) {}
 
 void DiscoveryListener::start(dds::DomainParticipant& participant, const BusOptions& options) {
-  reannouncer_.start(participant);
+  announcements_.start(participant);
   server_.start(options);
   if (registry_)
     registry_->note(participant_of(to_writer_id(participant.guid())), participant.get_qos().name().to_string());
 }
 
 void DiscoveryListener::stop() {
-  reannouncer_.stop();
+  announcements_.stop();
   server_.stop();
 }
 
@@ -112,7 +112,7 @@ void DiscoveryListener::found(const FoundParticipant& participant) {
   if (registry_ && participant.change == Change::kGone) registry_->note_gone(participant.id);
   if (registry_ && participant.change != Change::kGone) registry_->note(participant.id, participant.name);
   if (participant.change != Change::kAppeared) return;
-  reannouncer_.announce_again();
+  announcements_.announce_again();
   server_.appeared(participant.id);
 }
 

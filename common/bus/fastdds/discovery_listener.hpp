@@ -18,9 +18,9 @@ namespace rtd::bus::fastdds {
 /// Announces our participant again to others that have just appeared. Fast DDS 2.9 answers a new participant's first
 /// announcement once, but it announces itself some milliseconds before it can receive: an answer that comes too early
 /// is lost, and the two match only at our next periodic announcement, half a second later. Thread-safe.
-class Reannouncer {
+class AnnouncementRepeater {
  public:
-  ~Reannouncer() { stop(); }
+  ~AnnouncementRepeater() { stop(); }
   void start(dds::DomainParticipant& participant);
   /// Afterwards the participant is not touched. To be called before it is deleted.
   void stop();
@@ -69,7 +69,7 @@ class DiscoveryListener : public DiscoveryAdapter {
 
   EndpointRegistry* const registry_;
   std::unique_ptr<SecurityWatch> security_;
-  Reannouncer reannouncer_;
+  AnnouncementRepeater announcements_;
   ServerWatch server_;
   TopicTypes types_;
 };

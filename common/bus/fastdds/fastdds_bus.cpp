@@ -17,7 +17,7 @@
 namespace rtd::bus::fastdds {
 namespace {
 
-/// What the codec writes: the bytes, and the identities beside them, which Fast DDS completes.
+/// What the codec writes: the bytes, and the identities next to them, which Fast DDS completes.
 struct CallOutput {
   std::span<const std::byte> cdr;
   rtps::WriteParams& params;
@@ -139,7 +139,7 @@ class FastddsCalls : public CallEndpoint {
   FastddsReader reader_;  // last: it uses the others
 };
 
-/// One end of a service as rmw_fastrtps has it: the identities travel beside the samples, in their inline QoS. A
+/// One end of a service as rmw_fastrtps has it: the identities travel next to the samples, in their inline QoS. A
 /// request is known by its number and by the GUID of the reader that waits for the reply, which the client announces as
 /// related identity; older clients (ROS 2 Foxy) announce none and mean their writer. A server answers clients of
 /// rmw_cyclonedds too, as they ask: their GUIDs say whose they are.

@@ -13,8 +13,8 @@
 #include "common/bus/fastdds/screening/ring_claims.hpp"
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/host/ring_folder.hpp"
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {

@@ -67,7 +67,7 @@ void configure_library_once() {
 }
 
 /// Fast DDS makes a participant that discovers by announcements one that asks the server of this variable, whatever
-/// its QoS say: what is not followed (common/service/dds_environment.hpp) must not come in here.
+/// its QoS say: what is not followed (common/service/bus_config.hpp) must not come in here.
 class WithoutServerOfEnvironment {
  public:
   WithoutServerOfEnvironment() {
@@ -114,7 +114,7 @@ bool listens_in_shm_at(std::uint32_t port) {
   return static_cast<bool>(unreadable);
 }
 
-/// The process id for the first participant of this process, far from it for the next: the numbers beside it are those
+/// The process id for the first participant of this process, far from it for the next: the numbers next to it are those
 /// of processes that were started together.
 std::uint32_t next_number() {
   constexpr std::uint32_t kApart = 31;

@@ -77,7 +77,7 @@ std::string camera_text(const geometry::CameraModel& camera) {
 }
 
 /// Units of a metre of 16-bit depth that no file gives: 5000 where the values cannot be millimetres.
-double units_by_look(const cv::Mat& depth) {
+double guess_depth_unit(const cv::Mat& depth) {
   constexpr double kTumUnits = 5000, kMillimetres = 1000, kSensorsReach_m = 15, kNearlyAll = 0.98;
   int measured = 0, fives = 0;
   for (int row = 0; row < depth.rows; row += 2) {
@@ -255,7 +255,8 @@ void FolderSource::choose_depth_unit(const Calibration& calibration, const First
   if (!info_.depth_unit_given) {
     const double usual = contents_.layout->depth_factor;
     by = usual > 0 ? std::string("the layout") : std::string("the images");
-    info_.depth_scale_m = 1 / (usual > 0 || first.depth.empty() ? std::max(usual, 1000.0) : units_by_look(first.depth));
+    info_.depth_scale_m =
+        1 / (usual > 0 || first.depth.empty() ? std::max(usual, 1000.0) : guess_depth_unit(first.depth));
   }
   note(fmt::format("depth: {:.6g} units per metre by {}", 1 / info_.depth_scale_m, by));
 }

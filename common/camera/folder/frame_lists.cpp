@@ -166,7 +166,7 @@ void sort_unique(std::vector<StampedFile>& entries) {
 }
 
 /// How often a stamp is smaller than the one before, when it is so often that they are no times; else 0.
-std::size_t falls(const std::vector<std::int64_t>& stamps_ns) {
+std::size_t count_backward_stamps(const std::vector<std::int64_t>& stamps_ns) {
   constexpr std::size_t kFewest = 3, kOneOf = 8;
   std::size_t backwards = 0;
   for (std::size_t i = 1; i < stamps_ns.size(); ++i) backwards += stamps_ns[i] < stamps_ns[i - 1];
@@ -181,7 +181,7 @@ std::vector<std::int64_t> color_stamps(const auto& entries) {
 
 /// A script wrote how long each frame took, for example.
 void check_times(const std::vector<std::int64_t>& stamps_ns, const fs::path& list) {
-  const std::size_t backwards = falls(stamps_ns);
+  const std::size_t backwards = count_backward_stamps(stamps_ns);
   if (backwards == 0) return;
   throw SourceError(
       fmt::format("{}: its stamps are not times: {} of {} are smaller than the one before, and those frames would be "
@@ -284,7 +284,7 @@ PairList read_two_lists(const fs::path& folder, const std::string& color, const 
   PairList list{{}, {}, 0, false, "by the stamps of " + color + " and " + depth};
   const std::vector<StampedFile> colors = read_list(folder / color, rules, list.skipped);
   const std::vector<StampedFile> depths = read_list(folder / depth, rules, list.skipped);
-  if (rules.count_frames && falls(color_stamps(colors)) > 0 && colors.size() == depths.size())
+  if (rules.count_frames && count_backward_stamps(color_stamps(colors)) > 0 && colors.size() == depths.size())
     return pair_in_order(files_of(colors), files_of(depths));
   check_times(color_stamps(colors), folder / color);
   pair_by_time(list, increasing(colors, list.skipped), depths, rules.tolerance_ns);

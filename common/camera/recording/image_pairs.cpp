@@ -10,7 +10,7 @@
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
-#include "common/camera/recording/recording_source.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/camera/recording/sdk_topics.hpp"
 #include "common/geometry/transform_log.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/recording_source.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/msg/rgbd_frame.hpp"
 #include "common/vision/rgbd_image.hpp"

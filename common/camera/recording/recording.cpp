@@ -3,13 +3,74 @@
 #include "common/camera/recording/recording.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
 #include <utility>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/driver_topics.hpp"
 
 namespace rtd::camera {
 namespace {
+
+/// How a driver names the two images, behind the camera's own name and namespaces.
+struct DriverNames {
+  std::string_view color, depth;
+};
+
+/// In the order of preference: depth that is registered to colour comes first.
+constexpr std::array kDrivers = {
+    DriverNames{"/color/image_raw", "/aligned_depth_to_color/image_raw"},                    // RealSense, ROS 1 and 2
+    DriverNames{"/rgb/image_raw", "/depth_to_rgb/image_raw"},                                // Azure Kinect
+    DriverNames{"/rgb/image_rect_color", "/depth/depth_registered"},                         // ZED
+    DriverNames{"/rgb/color/rect/image", "/depth/depth_registered"},                         // ZED, from version 5 on
+    DriverNames{"/qhd/image_color_rect", "/qhd/image_depth_rect"},                           // Kinect v2 (iai)
+    DriverNames{"/qhd/image_color", "/qhd/image_depth_rect"},                                //
+    DriverNames{"/hd/image_color_rect", "/hd/image_depth_rect"},                             //
+    DriverNames{"/hd/image_color", "/hd/image_depth_rect"},                                  //
+    DriverNames{"/rgb/image_rect_color", "/depth_registered/hw_registered/image_rect_raw"},  // OpenNI
+    DriverNames{"/rgb/image_rect_color", "/depth_registered/image"},                         //
+    DriverNames{"/rgb/image_color", "/depth_registered/image"},                              //
+    DriverNames{"/rgb/image_raw", "/depth_registered/image_raw"},                            //
+    DriverNames{"/rgb/image_color", "/depth/image"},                                         // TUM
+    DriverNames{"/color/image_raw", "/depth_registered/image_raw"},                          // Orbbec
+    DriverNames{"/color/image_raw", "/depth/image_raw"},                                     // Orbbec
+    DriverNames{"/color/image_raw", "/depth/image_rect_raw"},                      // RealSense, not registered
+    DriverNames{"/rgb/image_raw", "/stereo/image_raw"},                            // OAK (depthai-ros)
+    DriverNames{"/rgb/image_rect", "/stereo/image_raw"},                           //
+    DriverNames{"/color/image", "/stereo/depth"},                                  //
+    DriverNames{"/rgb/image_raw", "/depth/image_raw"},                             // Azure Kinect, not registered
+    DriverNames{"/sensor_1/Color_0/image/data", "/sensor_0/Depth_0/image/data"}};  // RealSense SDK
+
+constexpr std::array<std::string_view, 3> kColorTransports = {"", "/compressed", "/zstd"};
+constexpr std::array<std::string_view, 3> kDepthTransports = {"", "/compressedDepth", "/zstd"};
+
+std::optional<std::string> camera_of(const std::string& topic, const std::string& ending) {
+  if (!topic.ends_with(ending)) return std::nullopt;
+  return topic.substr(0, topic.size() - ending.size());
+}
+
+std::vector<TopicPair> pairs_ending(const std::vector<std::string>& color, const std::vector<std::string>& depth,
+                                    const std::string& color_ending, const std::string& depth_ending) {
+  std::vector<TopicPair> pairs;
+  for (const std::string& topic : color) {
+    const std::optional<std::string> camera = camera_of(topic, color_ending);
+    if (!camera) continue;
+    const std::string partner = *camera + depth_ending;
+    if (std::ranges::find(depth, partner) != depth.end()) pairs.push_back({topic, partner});
+  }
+  return pairs;
+}
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+bool contains_any(const std::string& topic, std::initializer_list<std::string_view> parts) {
+  const std::string name = lower(topic);
+  return std::ranges::any_of(parts, [&](std::string_view part) { return name.find(part) != std::string::npos; });
+}
 
 using recordings::Reader;
 using Topics = std::vector<RecordedTopic>;
@@ -131,6 +192,38 @@ std::string choose_info(const Reader& recording, const std::string& color) {
 
 }  // namespace
 
+std::vector<TopicPair> driver_pairs(const std::vector<std::string>& color, const std::vector<std::string>& depth) {
+  for (const DriverNames& driver : kDrivers) {
+    for (const std::string_view color_transport : kColorTransports) {
+      for (const std::string_view depth_transport : kDepthTransports) {
+        auto pairs = pairs_ending(color, depth, std::string(driver.color).append(color_transport),
+                                  std::string(driver.depth).append(depth_transport));
+        if (!pairs.empty()) return pairs;
+      }
+    }
+  }
+  return {};
+}
+
+bool named_as_depth(const std::string& topic) {
+  return contains_any(topic, {"depth", "/stereo/image_raw"});
+}
+
+bool named_as_other_than_color(const std::string& topic) {
+  return named_as_depth(topic) || contains_any(topic, {"/ir", "infra", "mask"});
+}
+
+bool named_as_infrared(const std::string& topic) {
+  return !named_as_depth(topic) && contains_any(topic, {"/infra1/", "/infra/", "/ir/", "/infrared_1/", "/left_ir/"});
+}
+
+std::string sdk_depth_unit_topic(const std::string& depth_topic) {
+  constexpr std::string_view kData = "/Depth_0/image/data";
+  const std::size_t data = depth_topic.find(kData);
+  if (!depth_topic.starts_with("/device_") || data == std::string::npos) return {};
+  return depth_topic.substr(0, data) + "/option/Depth_Units/value";
+}
+
 RecordedMessage first_of(Reader& recording, const std::string& topic) {
   std::optional<RecordedMessage> message = recording.first(topic);
   if (message) return std::move(*message);
@@ -157,6 +250,35 @@ std::vector<std::string> transform_topics(const Reader& recording) {
     if (is_tf(topic)) names.push_back(topic.name);
   }
   return names;
+}
+
+std::unique_ptr<FrameSource> open_recording(std::string uri, std::unique_ptr<recordings::Reader> recording,
+                                            const RecordingOptions& options) {
+  const bool named = !options.topics.color.empty() || !options.topics.depth.empty();
+  if (!named && !own_frames_topic(*recording).empty()) return make_own_frames(std::move(uri), std::move(recording));
+  return make_image_pairs(std::move(uri), std::move(recording), options);
+}
+
+RecordingSource::RecordingSource(std::string uri, std::unique_ptr<recordings::Reader> recording)
+    : recording_(std::move(recording)) {
+  info_.uri = std::move(uri);
+}
+
+void RecordingSource::describe_rate(const std::string& topic) {
+  constexpr std::size_t kTimes = 16;  // each may have to be unpacked
+  constexpr double kMinHz = 0.1, kMaxHz = 1000;
+  info_.frames = topic_named(*recording_, topic)->messages;
+  const std::vector<std::int64_t> times_ns = recording_->first_times_ns(topic, kTimes);
+  std::vector<std::int64_t> periods_ns;
+  for (std::size_t i = 1; i < times_ns.size(); ++i) periods_ns.push_back(times_ns[i] - times_ns[i - 1]);
+  std::ranges::sort(periods_ns);
+  if (periods_ns.empty()) return;
+  const auto median_ns = static_cast<double>(periods_ns[periods_ns.size() / 2]);
+  if (median_ns > 0) info_.fps = std::clamp(1e9 / median_ns, kMinHz, kMaxHz);
+}
+
+void RecordingSource::take_damages() {
+  for (std::string& damage : recording_->take_damages()) skips_.add({SkipReason::kDamagedRecord, std::move(damage)});
 }
 
 }  // namespace rtd::camera

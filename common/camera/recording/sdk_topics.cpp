@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/driver_topics.hpp"
+#include "common/camera/recording/recording.hpp"
 #include "common/camera/settings_text.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/io/text.hpp"

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/synthetic/geometry.hpp"
 
-#include "common/camera/synthetic/same_math.hpp"
+#include "common/camera/synthetic/deterministic_math.hpp"
 
 namespace rtd::camera::synthetic {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/camera/synthetic/same_math.hpp"
+#include "common/camera/synthetic/deterministic_math.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {
@@ -159,7 +159,7 @@ cv::Rect Renderer::bounds_px(const Ellipsoid& ellipsoid) const {
     v_max = std::max(v_max, v);
   }
   if (in_front == 0) return {};
-  if (in_front < 8) return image;  // partly beside or behind the camera: no projection bounds it
+  if (in_front < 8) return image;  // partly next to or behind the camera: no projection bounds it
   const auto pixel = [](float x) { return static_cast<int>(std::clamp(x, -1e4F, 1e4F)); };
   return cv::Rect(cv::Point(pixel(u_min) - 1, pixel(v_min) - 1), cv::Point(pixel(u_max) + 2, pixel(v_max) + 2)) & image;
 }

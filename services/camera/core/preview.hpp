@@ -28,7 +28,7 @@ class Preview {
   /// best on edges of colour. Empty when the scene has too few of both.
   std::optional<cv::Point2d> registration_px() const;
 
-  /// The newest frame: colour, and beside it depth from near (red) to far (blue), black where there is none.
+  /// The newest frame: colour, and next to it depth from near (red) to far (blue), black where there is none.
   cv::Mat picture() const;
   /// A line for each figure.
   std::string text(const SourceInfo& info, const SourceCounters& counters) const;

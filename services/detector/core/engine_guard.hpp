@@ -29,7 +29,7 @@ struct AgreementCount {
   std::size_t images = 0, agreeing = 0;
   std::string first_difference;  ///< of the first image on which they do not agree
 
-  /// Counts one image with what disagreement() says of it.
+  /// Counts one image with what disagreement() says about it.
   void add(const std::string& difference);
 };
 

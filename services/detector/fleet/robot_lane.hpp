@@ -13,7 +13,6 @@
 #include "common/msg/ros.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
-#include "services/detector/core/fleet/answer_stats.hpp"
 #include "services/detector/core/fleet/duty.hpp"
 #include "services/detector/fleet/fleet_pipeline.hpp"
 

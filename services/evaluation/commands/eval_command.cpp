@@ -16,9 +16,9 @@
 #include "common/run_record/run_record.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/commands/guarded.hpp"
-#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
+#include "services/evaluation/core/trajectory/integrity_text.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -29,8 +29,8 @@ std::string command_of(const ExperimentOptions& options) {
   return options.is_benchmark() ? "rtd benchmark" : "rtd ablate";
 }
 
-/// The runs of an earlier call that count here; else its file is kept beside the new one.
-void take_up(const ExperimentOptions& options, Experiment& experiment) {
+/// The runs of an earlier call that count here; else its file is kept next to the new one.
+void resume_from(const ExperimentOptions& options, Experiment& experiment) {
   const fs::path file = fs::path(options.out_dir) / (experiment.name + ".json");
   std::error_code ignored;
   if (!options.resume || !fs::exists(file, ignored)) return;
@@ -161,7 +161,7 @@ service::ExitCode measure(const ExperimentOptions& options) {
   Experiment experiment = plan_experiment(options);
   for (const LeftOut& one : experiment.left_out)
     std::cerr << command_of(options) << ": " << one.folder << " is left out: " << one.reason << '\n';
-  take_up(options, experiment);
+  resume_from(options, experiment);
   experiment.complete = run_missing(options, experiment, before);
   write_results(options, experiment, before);
   print_results(options, experiment, before);

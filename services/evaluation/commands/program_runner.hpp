@@ -23,7 +23,7 @@ struct ProgramResult {
   std::string last_line;
 };
 
-/// Runs all tasks in their order, at most `jobs` beside each other; what they print goes to standard error. `on_done`
+/// Runs all tasks in their order, at most `jobs` next to each other; what they print goes to standard error. `on_done`
 /// is called after each, on this thread. A signal ends those that run, without a call; false then. Throws
 /// process::ProcessError when a program cannot be started.
 bool run_programs(const std::vector<ProgramTask>& tasks, int jobs, service::InterruptSignals& signals,

@@ -30,7 +30,8 @@ struct CompareOptions {
 };
 void add_compare_command(CLI::App& parent, CompareOptions& options);
 
-/// Writes one page with several runs of the same source beside each other and prints their errors. Exit codes as above.
+/// Writes one page with several runs of the same source next to each other and prints their errors. Exit codes as
+/// above.
 int run_compare(const CompareOptions& options, std::ostream& out, std::ostream& err);
 
 }  // namespace rtd::eval

@@ -132,7 +132,7 @@ std::string threshold_rows(const LabelledResults& results) {
   return text;
 }
 
-/// What the other engines find beside the CPU; nothing when only the CPU was asked for.
+/// What the other engines find next to the CPU; nothing when only the CPU was asked for.
 std::string agreement_rows(const LabelledResults& results) {
   std::string rows;
   for (const LabelledResult& result : results.models) {

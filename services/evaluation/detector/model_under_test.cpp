@@ -33,7 +33,7 @@ std::string locate(const std::string& name) {
   return model.path;
 }
 
-detector::DetectorConfig keep_from(detector::DetectorConfig config, double least_score) {
+detector::DetectorConfig with_min_score(detector::DetectorConfig config, double least_score) {
   config.decode.confidence_threshold = config.decode.objectness_threshold = least_score;
   return config;
 }
@@ -53,7 +53,7 @@ auto load_or_explain(const auto& load) {
 
 ModelUnderTest::ModelUnderTest(const detector::DetectorConfig& config, double least_score)
     : facts_{.name = fs::path(config.model_path).filename().string(), .engine = config.engine},
-      detector_(keep_from(config, least_score)),
+      detector_(with_min_score(config, least_score)),
       timed_(config) {
   const std::string bytes = io::try_read_file(config.model_path, io::kNetwork).value_or("");
   const detector::OnnxFile file =

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "services/filter/core/boxes/object_tracker.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/movers/world_movers.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
@@ -62,7 +62,7 @@ class DynamicFilter {
     return filter::sight_objects(result.objects, result, {grid_, sampler_.rays(), color_bgr});
   }
 
-  /// What an IMU beside the camera measured, in order of time and before the frame that ends there: its gyroscope says
+  /// What an IMU next to the camera measured, in order of time and before the frame that ends there: its gyroscope says
   /// how the camera has turned.
   void add(const inertial::ImuSample& sample) { gyroscope_.add(sample); }
 

@@ -18,6 +18,7 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kSyntheticSource[] = "synthetic:office?frames=300&figures=drawn";
-constexpr char kSequence[] = "walk_xyz";
 constexpr char kPublicUrl[] = "https://cvg.cit.tum.de/rgbd/dataset";
 
 std::string environment(const char* name) {
@@ -63,7 +63,7 @@ void unpack(const fs::path& archive, const fs::path& folder, const std::string& 
 std::string choose_source(const DemoOptions& options) {
   if (!options.dataset.empty()) return "tum:" + fetch_tum_dataset(options.dataset);
   const std::string data = demo_data_folder();
-  return data.empty() ? kSyntheticSource : "tum:" + (fs::path(data) / kSequence).string();
+  return data.empty() ? kSyntheticSource : "tum:" + (fs::path(data) / kDemoSequence).string();
 }
 
 /// Lockstep: the figures do not depend on the load of this host, and a second demo gives the same ones.
@@ -131,12 +131,6 @@ int demo(const DemoOptions& options) {
     const process::FolderLock folder = process::take_out_folder(options.out_dir);
     return run_both(options, choose_source(options));
   });
-}
-
-std::string demo_data_folder() {
-  const std::string folder = environment("RTD_DATA_DIR");
-  std::error_code error;
-  return !folder.empty() && fs::is_directory(fs::path(folder) / kSequence, error) ? folder : "";
 }
 
 TumDataset tum_dataset(const std::string& name, const std::string& base_url) {

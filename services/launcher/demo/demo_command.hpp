@@ -20,9 +20,6 @@ struct DemoOptions {
 /// Runs the same source with filter mode off and rtd, compares both with the ground truth. Returns the exit code.
 int demo(const DemoOptions& options);
 
-/// RTD_DATA_DIR when it has the sequence that the demo plays, walk_xyz; else empty.
-std::string demo_data_folder();
-
 /// A sequence of the TUM RGB-D benchmark, on the network and on this host.
 struct TumDataset {
   std::string url;     ///< of the archive

@@ -13,8 +13,8 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/security/enclave.hpp"
 
 namespace rtd::launcher {

@@ -9,7 +9,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <mutex>
 #include <ostream>
 #include <string>
@@ -28,7 +30,6 @@
 #include "common/service/onnxruntime_locator.hpp"
 #include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
-#include "services/launcher/demo/demo_command.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -222,6 +223,14 @@ int check_all(const DoctorOptions& options, std::ostream& out) {
 }
 
 }  // namespace
+
+std::string demo_data_folder() {
+  const char* const folder = std::getenv("RTD_DATA_DIR");
+  std::error_code error;
+  return folder != nullptr && std::filesystem::is_directory(std::filesystem::path(folder) / kDemoSequence, error)
+             ? folder
+             : "";
+}
 
 std::string why_no_realsense(const std::string& serial, const bus::BusOptions& options) {
   std::string why = look_for_realsense(serial, options);

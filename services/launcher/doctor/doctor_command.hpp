@@ -42,6 +42,10 @@ void check_network(const bus::BusOptions& options, Findings& findings);
 /// A line for each camera with its modes, or what keeps it from being used; one line when there is none.
 void describe_cameras(const std::vector<camera::FoundCamera>& cameras, Findings& findings);
 
+/// The sequence that `rtd demo` plays, and RTD_DATA_DIR when it has it; else empty.
+inline constexpr char kDemoSequence[] = "walk_xyz";
+std::string demo_data_folder();
+
 /// Why the camera of a source "SCHEME:[DEVICE]" cannot be used now, in the words of the doctor: it is not plugged in,
 /// or others are. `device`: its URI or serial number, empty = the first. Empty when it is there.
 std::string why_no_camera(const std::string& scheme, const std::string& device,

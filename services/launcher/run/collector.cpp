@@ -36,9 +36,9 @@ Collector::Collector(bus::Bus& bus, FrameStore& store, const Options& options)
       keep_features_(options.keep_features),
       with_masks_(options.masks) {
   if (options.secured) {
-    peers_.believe_only("camera", camera_);
-    peers_.believe_only("filter", filter_);
-    peers_.believe_only("slam", slam_);
+    peers_.accept_only_from("camera", camera_);
+    peers_.accept_only_from("filter", filter_);
+    peers_.accept_only_from("slam", slam_);
   }
   const auto add_message = [this](const auto& message) { add(*message); };
   tracking_reader_ = bus.reader(bus::topics::kTracking, add_message, slam_->callbacks());

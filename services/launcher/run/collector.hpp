@@ -67,7 +67,7 @@ class Collector {
   void encode_samples();
 
   bus::Bus& bus_;
-  const std::shared_ptr<service::ProcessBook> processes_ = std::make_shared<service::ProcessBook>();
+  const std::shared_ptr<service::ProcessRegistry> processes_ = std::make_shared<service::ProcessRegistry>();
   const std::shared_ptr<bus::SourceGate> camera_, filter_, slam_;
   mutable std::mutex mutex_;
   service::PeerTable peers_;  ///< whose heartbeats count

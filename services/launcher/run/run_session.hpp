@@ -14,7 +14,7 @@
 #include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/process/frame_file.hpp"
 #include "services/launcher/process/service_logs.hpp"
-#include "services/launcher/process/usage_book.hpp"
+#include "services/launcher/process/usage_registry.hpp"
 #include "services/launcher/run/collector.hpp"
 #include "services/launcher/run/run_setup.hpp"
 
@@ -63,7 +63,7 @@ class RunSession {
   service::InterruptSignals& signals_;
   Terminal& terminal_;
   ServiceLogs logs_;
-  UsageBook usage_;
+  UsageRegistry usage_;
   FrameFile frames_;
   Collector collector_;
   process::PosixProcessHost host_;

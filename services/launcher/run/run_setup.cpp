@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/camera/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/printable.hpp"
@@ -231,8 +231,8 @@ std::vector<std::string> camera_arguments(const RunSetup& setup, const std::vect
                                         "--groundtruth-out", setup.groundtruth_path(),
                                         "--source-id",       std::to_string(std::random_device()() >> 1U)};
   if (setup.frames > 0) arguments.insert(arguments.end(), {"--frames", std::to_string(setup.frames)});
-  if (!setup.beside.empty())
-    arguments.insert(arguments.end(), {"--beside", fmt::format("{}", fmt::join(setup.beside, ","))});
+  if (!setup.sensor_topics.empty())
+    arguments.insert(arguments.end(), {"--sensor-topics", fmt::format("{}", fmt::join(setup.sensor_topics, ","))});
   return arguments;
 }
 

@@ -133,7 +133,8 @@ struct RunSetup : RunOptions {
   bool save_map_asked = false;  ///< the user named the file
   ViewerUse viewer_use;
   ReplaySetup replay;
-  std::vector<std::string> beside;  ///< ROS names of topics of a recorded source that slam needs, for --beside
+  std::vector<std::string>
+      sensor_topics;  ///< ROS names of topics of a recorded source that slam needs, for --sensor-topics
 
   /// Where the services write their parts of --trace.
   std::string trace_folder() const { return out_dir + "/trace"; }

@@ -39,7 +39,7 @@ std::uint64_t limited(std::uint64_t frames, std::uint64_t limit) {
   return frames == 0 ? limit : std::min(frames, limit);
 }
 
-/// What the first frame, which is read in any case, says of the depth unit; empty when it says nothing.
+/// What the first frame, which is read in any case, says about the depth unit; empty when it says nothing.
 std::string doubt_about_depth(camera::FrameSource& source) {
   const std::optional<camera::SourceFrame> first = source.next();
   if (!first) return {};
@@ -50,7 +50,7 @@ std::string doubt_about_depth(camera::FrameSource& source) {
 
 /// --imu and --wheel-odometry of a recorded source come from the recording, and so does tf. Throws ConfigError listing
 /// its topics when it does not have them. None for other sources.
-std::vector<std::string> topics_beside(const RunSetup& setup) {
+std::vector<std::string> sensor_topics(const RunSetup& setup) {
   const auto& motion = setup.services.motion;
   const bool tf = setup.services.base.from_tf();
   if (!motion.given() && !tf) return {};
@@ -103,7 +103,7 @@ void look_at_source(RunSetup& setup) {
   setup.source_notes = source->info().notes;
   setup.source_remarks = source->info().remarks;
   if (!run_record::is_synthetic(setup.source)) setup.depth_doubt = doubt_about_depth(*source);
-  setup.beside = topics_beside(setup);
+  setup.sensor_topics = sensor_topics(setup);
 }
 
 }  // namespace rtd::launcher

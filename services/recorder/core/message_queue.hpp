@@ -15,7 +15,7 @@
 namespace rtd::recorder {
 
 struct QueuedMessage {
-  std::size_t topic = 0;  ///< index in the TopicBook
+  std::size_t topic = 0;  ///< index in the TopicRegistry
   std::uint32_t sequence = 0;
   std::uint64_t received_ns = 0, source_ns = 0;
   std::shared_ptr<const bus::ByteBlock> bytes;

@@ -11,7 +11,7 @@
 namespace rtd::recorder {
 
 /// The files of a recording. "run.mcap" is that file, or run_0.mcap, run_1.mcap, ... when it is split. Anything else is
-/// a folder in the layout of rosbag2: run/run_0.mcap, ... with metadata.yaml beside the files.
+/// a folder in the layout of rosbag2: run/run_0.mcap, ... with metadata.yaml next to the files.
 class OutputFiles {
  public:
   OutputFiles(const std::string& output, bool split);

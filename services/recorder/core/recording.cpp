@@ -123,7 +123,7 @@ void SyncThread::sync(const std::deque<Mark>& marks) {
   }
 }
 
-Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicBook& book, SyncThread& sync)
+Recording::Recording(RecordingOptions options, OpenSink open_sink, TopicRegistry& book, SyncThread& sync)
     : options_(options),
       open_sink_(std::move(open_sink)),
       book_(book),

@@ -18,7 +18,7 @@
 #include "common/mcap/writer.hpp"
 #include "services/recorder/core/message_queue.hpp"
 #include "services/recorder/core/output_files.hpp"
-#include "services/recorder/core/topic_book.hpp"
+#include "services/recorder/core/topic_registry.hpp"
 
 namespace rtd::recorder {
 
@@ -83,7 +83,7 @@ class Recording {
  public:
   using OpenSink = std::function<std::shared_ptr<io::ByteSink>(std::size_t number)>;
 
-  Recording(RecordingOptions options, OpenSink open_sink, TopicBook& book, SyncThread& sync);
+  Recording(RecordingOptions options, OpenSink open_sink, TopicRegistry& book, SyncThread& sync);
 
   void write(const QueuedMessage& message, std::int64_t now_ns);
   /// Ends a chunk that has waited long enough.
@@ -104,7 +104,7 @@ class Recording {
 
   const RecordingOptions options_;
   const OpenSink open_sink_;
-  TopicBook& book_;
+  TopicRegistry& book_;
   SyncThread& sync_;
   std::shared_ptr<io::ByteSink> sink_;
   mcap::Writer writer_;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
 #include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
 
@@ -38,7 +40,7 @@ class OdometryFrame {
   Eigen::Isometry3d T_map_odom_ = Eigen::Isometry3d::Identity();
 };
 
-/// Frames beside an old map, which odometry alone has placed. What it was wrong by when the map is recognised again is
+/// Frames next to an old map, which odometry alone has placed. What it was wrong by when the map is recognised again is
 /// spread evenly over them. docs/theory/tracking.md, "Odometry".
 class OdometryStretch {
  public:
@@ -64,6 +66,21 @@ class KeyframeChangeQueue {
  private:
   std::deque<KeyframeChange> in_order_;  ///< created and removed
   std::map<KeyframeId, KeyframeChange> corrected_;
+};
+
+/// Frames that were tracked while surfaces were in question, and so without them. When it is known what rests, their
+/// poses are found again with all of it. docs/theory/tracking.md, "Surfaces in question".
+class DeferredFrames {
+ public:
+  /// Takes in the next tracked frame. Once nothing has been in question for long enough that keyframes have seen it,
+  /// those that wait are judged again in `map`. A frame keeps its pose in `frames` where its keyframe is not in the map
+  /// or too few landmarks agree; one that is no longer recorded does not count.
+  void add(const TrackedFrame& tracked, const LocalMap& map, const TrackingContext& context,
+           std::vector<FrameRecord>& frames);
+
+ private:
+  std::vector<TrackedFrame> waiting_;
+  std::int64_t in_question_ns_ = 0;  ///< stamp of the last frame that had something in question
 };
 
 }  // namespace rtd::slam

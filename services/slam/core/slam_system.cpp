@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::slam {
 
@@ -49,7 +49,7 @@ void SlamSystem::reset() {
   placed_ = true;
   map_ = 0;
   frames_.clear();
-  unsettled_ = {};
+  deferred_ = {};
   leave_odometry();
   frames_tracked_ = 0;
   changes_ = {};
@@ -216,7 +216,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   }
   evidence_ = {outcome.tracked.frame, outcome.tracked.T_world_camera, outcome.inliers, std::move(outcome.rejected)};
   record(outcome.tracked);
-  unsettled_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
+  deferred_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!std::exchange(placed_, true)) {
     odometry_.correct(config_.first_pose, tracker_->T_world_camera());  // which reset() has tied it to
@@ -233,7 +233,7 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
   return outcome;
 }
 
-/// Odometry continues beside an old map, or has just met it again, or is over.
+/// Odometry continues next to an old map, or has just met it again, or is over.
 void SlamSystem::join(const TrackOutcome& outcome) {
   using State = msg::TrackingState;
   const bool found = outcome.at_place() || (msg::is_measured(outcome.state) && !outcome.apart);
@@ -368,27 +368,14 @@ FrameResult SlamSystem::result_of(const msg::FeatureFrame& message, const FrameI
   return result;
 }
 
-std::vector<StampedPose> SlamSystem::trajectory(MapId id) const {
-  std::vector<StampedPose> poses;
-  mapping_.read([&](const Map& map) { poses = compose_trajectory(map, frames_, id); });
-  return poses;
-}
-
-std::vector<StampedPose> SlamSystem::keyframes(MapId id) const {
-  std::vector<StampedPose> poses;
-  mapping_.read([&](const Map& map) { poses = keyframe_trajectory(map, id); });
-  return poses;
-}
-
 std::vector<MapPoint> SlamSystem::map_points(MapId id) const {
   constexpr std::size_t kPortion = 20'000;  // 2 ms: the mapper waits no longer
-  std::vector<LandmarkId> ids;
-  mapping_.read([&](const Map& map) { ids = map.landmark_ids(); });
+  const std::vector<LandmarkId> ids = read_map([](const Map& map) { return map.landmark_ids(); });
   std::vector<MapPoint> points;
   points.reserve(ids.size());
   for (std::size_t begin = 0; begin < ids.size(); begin += kPortion) {
     const auto portion = std::span(ids).subspan(begin, std::min(kPortion, ids.size() - begin));
-    mapping_.read([&](const Map& map) { append_map_points(map, id, portion, points); });
+    read_map([&](const Map& map) { append_map_points(map, id, portion, points); });
   }
   return points;
 }
@@ -396,16 +383,10 @@ std::vector<MapPoint> SlamSystem::map_points(MapId id) const {
 MapView SlamSystem::map_view() const {
   while (true) {
     const std::uint64_t session = mapping_.session();
-    MapView view = copy_view([this](const auto& look) { mapping_.read(look); });
+    MapView view = copy_view([this](const auto& look) { read_map(look); });
     view.session = session;
     if (mapping_.session() == session) return view;  // else it may be of two maps
   }
-}
-
-std::vector<MapId> SlamSystem::maps() const {
-  std::vector<MapId> maps;
-  mapping_.read([&](const Map& map) { maps = map.maps(); });
-  return maps;
 }
 
 }  // namespace rtd::slam

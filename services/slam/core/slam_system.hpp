@@ -14,10 +14,8 @@
 #include "services/slam/core/map/map_changes.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapping_worker.hpp"
-#include "services/slam/core/tracking/depth_weight.hpp"
 #include "services/slam/core/tracking/disagreement.hpp"
 #include "services/slam/core/tracking/readout_estimator.hpp"
-#include "services/slam/core/tracking/settling.hpp"
 #include "services/slam/core/tracking/tracker.hpp"
 
 namespace rtd::slam {
@@ -94,16 +92,22 @@ class SlamSystem {
   void finish(PendingAdjustment pending = PendingAdjustment::kAwait) { mapping_.finish(pending); }
 
   /// Of one map: each has a world frame of its own.
-  std::vector<StampedPose> trajectory(MapId id = 0) const;
-  std::vector<StampedPose> keyframes(MapId id = 0) const;
+  std::vector<StampedPose> trajectory(MapId id = 0) const {
+    return mapping_.read([&](const Map& map) { return compose_trajectory(map, frames_, id); });
+  }
+  std::vector<StampedPose> keyframes(MapId id = 0) const {
+    return mapping_.read([&](const Map& map) { return keyframe_trajectory(map, id); });
+  }
   std::vector<MapPoint> map_points(MapId id = 0) const;
   /// What viewers show of all maps.
   MapView map_view() const;
   /// Of the last frame. The thread of process().
   const PoseEvidence& evidence() const { return evidence_; }
-  std::vector<MapId> maps() const;
-  /// Reads the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
-  void read_map(const std::function<void(const Map&)>& look) const { mapping_.read(look); }
+  std::vector<MapId> maps() const {
+    return mapping_.read([](const Map& map) { return map.maps(); });
+  }
+  /// What `look` finds in the whole map: may wait for a bundle adjustment, and the mapper waits until it is done.
+  auto read_map(const auto& look) const { return mapping_.read(look); }
   std::vector<LoopClosure> loops() const { return mapping_.loops(); }
   std::size_t frames_tracked() const { return frames_tracked_; }
   std::uint64_t source_restarts() const { return source_restarts_; }
@@ -161,7 +165,7 @@ class SlamSystem {
   KeyframeChangeQueue changes_;
   std::vector<FrameRecord> frames_;  ///< all of the last hours (thin_out())
   std::size_t frames_tracked_ = 0;
-  UnsettledFrames unsettled_;
+  DeferredFrames deferred_;
   std::uint64_t event_count_ = 0;
   std::size_t loops_reported_ = 0;
   std::uint64_t source_restarts_ = 0;

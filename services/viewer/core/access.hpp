@@ -11,7 +11,7 @@ namespace rtd::viewer {
 /// Who may connect. A web page of another site may open a connection to this host from the user's browser, and a name
 /// of its own may point here: so Host and Origin are checked.
 struct AccessRules {
-  std::vector<std::string> hosts;    ///< names by which this server may be addressed, beside loopback; empty: any
+  std::vector<std::string> hosts;    ///< names by which this server may be addressed, besides loopback; empty: any
   std::vector<std::string> origins;  ///< of other sites whose pages may connect: "https://app.foxglove.dev"
   std::string token;                 ///< empty: none is asked for
   std::string look_token = {};       ///< who knows this one may look, and only that; empty: there is none

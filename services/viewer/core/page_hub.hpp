@@ -17,7 +17,7 @@ namespace rtd::viewer {
 struct PageOptions {
   bool image = true, mask = true, features = true, points = true, dense = false, people = true;
   bool moving = false, plan = false;  ///< the dense points of what moved; the floor plan
-  bool depth = false;                 ///< a picture of the depth beside the image
+  bool depth = false;                 ///< a picture of the depth next to the image
   PageOptions operator|(const PageOptions& other) const {
     return {image || other.image,   mask || other.mask,   features || other.features,
             points || other.points, dense || other.dense, people || other.people,

@@ -21,7 +21,7 @@
 
 namespace rtd::viewer {
 
-/// Ground truth beside the tracked positions, aligned to them by the rigid motion with the smallest squared error
+/// Ground truth next to the tracked positions, aligned to them by the rigid motion with the smallest squared error
 /// (Umeyama 1991), as docs/evaluation.md does it after the run. One thread.
 class TruthTrack {
  public:

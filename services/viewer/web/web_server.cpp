@@ -39,7 +39,7 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-/// The subprotocol of ours that the client prefers; "" when it offers none.
+/// Our subprotocol that the client prefers; "" when it offers none.
 std::string choose_subprotocol(std::string_view offered) {
   while (!offered.empty()) {
     const std::size_t end = std::min(offered.find(','), offered.size());
@@ -52,38 +52,24 @@ std::string choose_subprotocol(std::string_view offered) {
   return {};
 }
 
-/// A frame as a sequence of buffers. It lives until the write has ended.
-class Outgoing {
+std::array<asio::const_buffer, 2> buffers(const Frame& frame) {
+  return {asio::buffer(frame.head), frame.payload ? asio::buffer(*frame.payload) : asio::const_buffer()};
+}
+
+class BeastServer : public WebServer {
  public:
-  explicit Outgoing(Frame frame) : frame_(std::move(frame)) {}
-  bool text() const { return frame_.text; }
-  std::size_t size() const { return frame_.size(); }
-  std::array<asio::const_buffer, 2> buffers() const {
-    const asio::const_buffer payload =
-        frame_.payload ? asio::buffer(frame_.payload->data(), frame_.payload->size()) : asio::const_buffer();
-    return {asio::buffer(frame_.head.data(), frame_.head.size()), payload};
-  }
+  BeastServer(const WebOptions& options, const Site& site, Open open, Reports reports);
+  ~BeastServer() override;
 
- private:
-  Frame frame_;
-};
-
-}  // namespace
-
-class WebServer::Implementation {
- public:
-  Implementation(const WebOptions& options, const Site& site, Open open, Reports reports);
-  ~Implementation();
-
-  std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
-  void run_for(std::chrono::milliseconds time) {
+  std::uint16_t port() const override { return acceptor_.local_endpoint().port(); }
+  void run_for(std::chrono::milliseconds time) override {
     context_.restart();
     context_.poll();  // run_for() does nothing when no time is given
     context_.run_for(time);
   }
-  void post(std::function<void()> task) { asio::post(context_, std::move(task)); }
-  void pump();
-  WebCounts counts() const;
+  void post(std::function<void()> task) override { asio::post(context_, std::move(task)); }
+  void pump() override;
+  WebCounts counts() const override;
 
  private:
   class Visitor;
@@ -93,8 +79,6 @@ class WebServer::Implementation {
   void accept();
   void welcome(tcp::socket socket);
   void close_oldest_visitor();
-  void forget(Visitor* visitor);
-  void forget(Client* client);
   void upgrade(beast::tcp_stream stream, Request request, Rights rights);
 
   const WebOptions options_;
@@ -111,10 +95,12 @@ class WebServer::Implementation {
 };
 
 /// A connection that speaks HTTP.
-class WebServer::Implementation::Visitor : public std::enable_shared_from_this<Visitor> {
+class BeastServer::Visitor : public std::enable_shared_from_this<Visitor> {
  public:
-  Visitor(Implementation& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
-  ~Visitor() { server_.forget(this); }
+  Visitor(BeastServer& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
+  ~Visitor() {
+    server_.visitors_.remove_if([](const auto& visitor) { return visitor.expired(); });
+  }
 
   void read() {
     parser_.emplace();
@@ -187,8 +173,8 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
   /// A page cannot see why a WebSocket was refused; here it can.
   void answer_access(const Request& request) {
     const Access access = access_of(request);
-    answer(may_look(access) ? http::status::ok : http::status::unauthorized, explain(access), "text/plain; charset=utf-8", false,
-           request.keep_alive(), false);
+    answer(may_look(access) ? http::status::ok : http::status::unauthorized, explain(access),
+           "text/plain; charset=utf-8", false, request.keep_alive(), false);
   }
 
   void answer_report(const Request& request, const std::function<Report()>& make) {
@@ -229,19 +215,19 @@ class WebServer::Implementation::Visitor : public std::enable_shared_from_this<V
                       });
   }
 
-  Implementation& server_;
+  BeastServer& server_;
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kLongestHead};
   std::optional<http::request_parser<http::empty_body>> parser_;
 };
 
 /// A connection that is a WebSocket.
-class WebServer::Implementation::Client : public std::enable_shared_from_this<Client> {
+class BeastServer::Client : public std::enable_shared_from_this<Client> {
  public:
-  Client(Implementation& server, beast::tcp_stream stream) : server_(server), socket_(std::move(stream)) {
+  Client(BeastServer& server, beast::tcp_stream stream) : server_(server), socket_(std::move(stream)) {
     server_.clients_.insert(this);
   }
-  ~Client() { server_.forget(this); }
+  ~Client() { server_.clients_.erase(this); }
 
   void accept(Request request, Rights rights) {
     const std::string subprotocol = choose_subprotocol(view(request[http::field::sec_websocket_protocol]));
@@ -269,9 +255,9 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
     }
     auto frame = session_->next(service::monotonic_ns());
     if (!frame) return;
-    writing_.emplace(std::move(*frame));
-    socket_.text(writing_->text());
-    socket_.async_write(writing_->buffers(), [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
+    writing_ = std::move(frame);
+    socket_.text(writing_->text);
+    socket_.async_write(buffers(*writing_), [self = shared_from_this()](beast::error_code error, std::size_t bytes) {
       self->server_.counts_.sent_bytes += bytes;
       self->writing_.reset();
       if (error) return self->drop();
@@ -296,7 +282,7 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
 
   void read() {
     socket_.async_read(buffer_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-      if (error) return self->end(error);
+      if (error) return self->session_.reset();  // Beast has answered a close or sent its reason
       self->receive();
     });
   }
@@ -316,25 +302,21 @@ class WebServer::Implementation::Client : public std::enable_shared_from_this<Cl
     read();
   }
 
-  void end(beast::error_code) {
-    session_.reset();  // Beast has answered a close or sent the reason of its own
-  }
-
-  Implementation& server_;
+  BeastServer& server_;
   websocket::stream<beast::tcp_stream> socket_;
   beast::flat_buffer buffer_;
   Request request_;
   std::unique_ptr<Session> session_;
-  std::optional<Outgoing> writing_;
+  std::optional<Frame> writing_;  ///< lives until the write has ended
 };
 
-WebServer::Implementation::Implementation(const WebOptions& options, const Site& site, Open open, Reports reports)
+BeastServer::BeastServer(const WebOptions& options, const Site& site, Open open, Reports reports)
     : options_(options), site_(site), open_(std::move(open)), reports_(std::move(reports)) {
   listen();
   accept();
 }
 
-WebServer::Implementation::~Implementation() {
+BeastServer::~BeastServer() {
   ended_ = true;
   beast::error_code ignored;
   acceptor_.close(ignored);
@@ -346,7 +328,7 @@ WebServer::Implementation::~Implementation() {
   context_.run_for(std::chrono::milliseconds(200));  // pending operations end and let go of their connections
 }
 
-void WebServer::Implementation::listen() {
+void BeastServer::listen() {
   beast::error_code error;
   const auto address = asio::ip::make_address(options_.address, error);
   if (error)
@@ -361,7 +343,7 @@ void WebServer::Implementation::listen() {
                    error.message() + "; choose another one with --port or --bind");
 }
 
-void WebServer::Implementation::accept() {
+void BeastServer::accept() {
   acceptor_.async_accept(context_, [this](beast::error_code error, tcp::socket socket) {
     if (ended_) return;
     if (!error) {
@@ -376,12 +358,12 @@ void WebServer::Implementation::accept() {
   });
 }
 
-void WebServer::Implementation::close_oldest_visitor() {
+void BeastServer::close_oldest_visitor() {
   if (visitors_.empty()) return;
   if (const auto oldest = visitors_.front().lock()) oldest->close();
 }
 
-void WebServer::Implementation::welcome(tcp::socket socket) {
+void BeastServer::welcome(tcp::socket socket) {
   beast::error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
@@ -391,53 +373,26 @@ void WebServer::Implementation::welcome(tcp::socket socket) {
   visitor->read();
 }
 
-void WebServer::Implementation::forget(Visitor*) {
-  visitors_.remove_if([](const auto& visitor) { return visitor.expired(); });
-}
-
-void WebServer::Implementation::forget(Client* client) {
-  clients_.erase(client);
-}
-
-void WebServer::Implementation::upgrade(beast::tcp_stream stream, Request request, Rights rights) {
+void BeastServer::upgrade(beast::tcp_stream stream, Request request, Rights rights) {
   std::make_shared<Client>(*this, std::move(stream))->accept(std::move(request), rights);
 }
 
-void WebServer::Implementation::pump() {
+void BeastServer::pump() {
   std::vector<std::shared_ptr<Client>> clients;  // one may go meanwhile
   for (Client* client : clients_) clients.push_back(client->shared_from_this());
   for (const auto& client : clients) client->pump();
 }
 
-WebCounts WebServer::Implementation::counts() const {
+WebCounts BeastServer::counts() const {
   WebCounts counts = counts_;
   counts.clients = clients_.size();
   return counts;
 }
 
-WebServer::WebServer(const WebOptions& options, const Site& site, Open open, Reports reports)
-    : implementation_(std::make_unique<Implementation>(options, site, std::move(open), std::move(reports))) {}
+}  // namespace
 
-WebServer::~WebServer() = default;
-
-std::uint16_t WebServer::port() const {
-  return implementation_->port();
-}
-
-void WebServer::run_for(std::chrono::milliseconds time) {
-  implementation_->run_for(time);
-}
-
-void WebServer::post(std::function<void()> task) {
-  implementation_->post(std::move(task));
-}
-
-void WebServer::pump() {
-  implementation_->pump();
-}
-
-WebCounts WebServer::counts() const {
-  return implementation_->counts();
+std::unique_ptr<WebServer> WebServer::listen(const WebOptions& options, const Site& site, Open open, Reports reports) {
+  return std::make_unique<BeastServer>(options, site, std::move(open), std::move(reports));
 }
 
 }  // namespace rtd::viewer

@@ -54,22 +54,17 @@ class WebServer {
 
   /// Listens from now on. Throws WebError. `site` outlives the server; so does what `open` and the reports use. Reports
   /// are made in the thread of run_for(); they ask for the token as a WebSocket does.
-  WebServer(const WebOptions& options, const Site& site, Open open, Reports reports = {});
-  ~WebServer();
-  WebServer(const WebServer&) = delete;
-  WebServer& operator=(const WebServer&) = delete;
+  static std::unique_ptr<WebServer> listen(const WebOptions& options, const Site& site, Open open,
+                                           Reports reports = {});
+  virtual ~WebServer() = default;
 
-  std::uint16_t port() const;
+  virtual std::uint16_t port() const = 0;
   /// Serves clients and runs what was posted, for this long.
-  void run_for(std::chrono::milliseconds time);
-  void post(std::function<void()> task);
+  virtual void run_for(std::chrono::milliseconds time) = 0;
+  virtual void post(std::function<void()> task) = 0;
   /// Asks every session for messages that are due.
-  void pump();
-  WebCounts counts() const;
-
- private:
-  class Implementation;
-  const std::unique_ptr<Implementation> implementation_;
+  virtual void pump() = 0;
+  virtual WebCounts counts() const = 0;
 };
 
 }  // namespace rtd::viewer

@@ -223,7 +223,7 @@ class RecordedRobot : public test::CameraOnBus {
 
 TEST_P(RecordedRobot, brings_its_imu_and_its_transforms) {
   if (!std::filesystem::exists(file())) GTEST_SKIP() << "no " << file();
-  config_.beside = {"/camera/imu", "/tf_static"};
+  config_.sensor_topics = {"/camera/imu", "/tf_static"};
   std::atomic<int> samples{0};
   const auto raw = bus::connect_raw(options_);
   bus::RawHandlers handlers;
@@ -241,7 +241,7 @@ TEST_P(RecordedRobot, brings_its_imu_and_its_transforms) {
 
 TEST_P(RecordedRobot, refuses_a_topic_that_it_does_not_have_with_those_it_has) {
   if (!std::filesystem::exists(file())) GTEST_SKIP() << "no " << file();
-  config_.beside = {"/other"};
+  config_.sensor_topics = {"/other"};
   EXPECT_THAT([this] { run(); }, ::testing::ThrowsMessage<service::ConfigError>(
                                      ::testing::AllOf(HasSubstr("/other"), HasSubstr("/camera/imu"))));
 }

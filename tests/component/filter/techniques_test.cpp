@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "services/filter/core/belief/belief_update.hpp"
+#include "services/filter/core/belief/static_probability.hpp"
 #include "services/filter/core/modes/mode_table.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "tests/unit/filter/grid_scenes.hpp"
@@ -44,8 +44,8 @@ double removed_of_mover(std::initializer_list<bool Techniques::*> off) {
 std::vector<SceneObject> objects_in(const vision::RgbdImage& image, const FilterConfig& config) {
   const DepthGrid grid = test::make_sampler().sample(image);
   const std::vector<ObjectBox> person{{{"person", 0.9F, 200, 100, 200, 320}}};
-  return find_objects(person, MotionLevels{}, image.camera, grid,
-                      find_depth_clusters(grid, ClusterConfig{}), effective_config(config).masks);
+  return find_objects(person, MotionLevels{}, image.camera, grid, find_depth_clusters(grid, ClusterConfig{}),
+                      effective_config(config).masks);
 }
 
 TEST(Techniques, motion_levels_off_treats_a_chair_like_a_person) {

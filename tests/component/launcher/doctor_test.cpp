@@ -10,8 +10,8 @@
 #include <ctime>
 #include <memory>
 
-#include "common/bus/host/port_check.hpp"
 #include "common/bus/network.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/msg/services.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "tests/component/launcher/rtd_command.hpp"

@@ -97,8 +97,9 @@ TEST(Heartbeat, where_writers_are_known_only_they_speak_for_their_service) {
   StopToken stop;
   Heartbeat filter(*bus, "filter", stop);
   const auto slams = std::make_shared<bus::SourceGate>(bus::SourceGate::Options{.clock = [] { return 1; }});
-  filter.believe_only("slam", slams);
-  const auto results = bus->reader(bus::topics::kTracking, [](const auto&) {}, slams->callbacks());
+  filter.accept_only_from("slam", slams);
+  const auto results = bus->reader(
+      bus::topics::kTracking, [](const auto&) {}, slams->callbacks());
   auto forged = elsewhere->writer(bus::topics::kStatus), after = elsewhere->writer(bus::topics::kStatus);
   for (int i = 0; i < 20; ++i) forged.write({.service = "slam", .state = msg::ServiceState::kRunning});
   after.write({.service = "dense"});
@@ -217,10 +218,10 @@ class RunServiceTest : public ::testing::Test {
     std::vector<char*> argv;
     argv.reserve(arguments.size());
     for (std::string& argument : arguments) argv.push_back(argument.data());
-    return run_service({"filter", "A service for tests",
-                        [this](ConfigBinder& binder) { binder.section("filter", config_); },
-                        [this](Runtime& runtime) { return body_(runtime); }},
-                       static_cast<int>(argv.size()), argv.data());
+    return run_service(
+        {"filter", "A service for tests", [this](ConfigBinder& binder) { binder.section("filter", config_); },
+         [this](Runtime& runtime) { return body_(runtime); }},
+        static_cast<int>(argv.size()), argv.data());
   }
 
   Config config_;

@@ -102,7 +102,7 @@ std::vector<io::Bytes> frame_seeds() {
 class Target {
  public:
   void send_request(const io::Bytes& input) {
-    Connection connection(server_.port());
+    Connection connection(server_->port());
     turn();
     connection.send(input);
     for (int i = 0; i < 3; ++i) turn();
@@ -117,24 +117,24 @@ class Target {
   }
 
   bool still_answers() {
-    Connection connection(server_.port());
+    Connection connection(server_->port());
     connection.send(request_seeds().front());
     for (int i = 0; i < 200; ++i) {
-      server_.run_for(std::chrono::milliseconds(1));
+      server_->run_for(std::chrono::milliseconds(1));
       if (connection.receive().starts_with("HTTP/1.1 200")) return true;
     }
     return false;
   }
   std::uint64_t answers() const { return answers_; }
-  WebCounts counts() const { return server_.counts(); }
+  WebCounts counts() const { return server_->counts(); }
 
  private:
   void turn() {
-    server_.run_for(std::chrono::milliseconds(0));
-    server_.pump();
+    server_->run_for(std::chrono::milliseconds(0));
+    server_->pump();
   }
   void connect() {
-    client_ = std::make_unique<Connection>(server_.port());
+    client_ = std::make_unique<Connection>(server_->port());
     const auto request = bytes(upgrade(++connected_ % 2 == 0 ? "foxglove.sdk.v1" : "rtd.viewer.v1"));
     client_->send(request);
     for (int i = 0; i < 3; ++i) turn();
@@ -144,10 +144,10 @@ class Target {
   FoxgloveHub foxglove_{"fuzz", "1", {}, {}};
   PageHub page_{{}, {}, {.on_call = {}, .now_ms = [] { return 0.0; }}};
   Site site_{"/usr/share/javascript/three"};
-  WebServer server_{
+  std::unique_ptr<WebServer> server_ = WebServer::listen(
       {.port = 0, .access = {.hosts = {"localhost"}}}, site_, [this](const std::string& subprotocol, Rights) {
         return subprotocol == page::kSubprotocol ? page_.open() : foxglove_.open();
-      }};
+      });
   std::unique_ptr<Connection> client_;
   std::uint64_t frames_ = 0, connected_ = 0, answers_ = 0;
 };

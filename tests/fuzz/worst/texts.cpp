@@ -13,7 +13,7 @@
 #include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/recordings/parts.hpp"
-#include "common/ros2/type_layout.hpp"
+#include "common/ros2/type_description.hpp"
 #include "common/ros_codec/message_definition.hpp"
 #include "services/filter/config.hpp"
 #include "tests/fuzz/worst/worst_case.hpp"

@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/cyclonedds/sample_limits.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <vector>
+
+#include "common/bus/cyclonedds/endpoints.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/host/port_check.hpp"
+#include "common/bus/port_check.hpp"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/bus/command_book.hpp"
+#include "common/bus/command_registry.hpp"
 #include "common/bus/robot.hpp"
 
 namespace rtd::bus {
@@ -66,8 +66,8 @@ TEST(NodeEndpoints, are_those_that_live) {
   endpoints.watch(nullptr);
 }
 
-TEST(CommandBook, calls_what_is_offered_and_answers_what_it_throws) {
-  CommandBook book;
+TEST(CommandRegistry, calls_what_is_offered_and_answers_what_it_throws) {
+  CommandRegistry book;
   EXPECT_FALSE(book.call("slam/reset", {}).has_value());
   book.add("slam/reset", [](const CommandRequest& request) -> CommandAnswer {
     if (request.argument == "bad") throw std::runtime_error("cause and fix");

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/recording/driver_topics.hpp"
 
 #include <fmt/ranges.h>
 #include <gmock/gmock.h>

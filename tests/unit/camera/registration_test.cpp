@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "common/camera/depth_alignment.hpp"
-#include "common/camera/depth_offsets.hpp"
+#include "common/camera/depth_figures.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"

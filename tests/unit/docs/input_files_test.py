@@ -29,7 +29,7 @@ ALLOWED = {
     "common/io/named_files.cpp": "looks at a name of a command, without waiting and following links",
     "common/bus/network.cpp": KERNEL,
     "common/bus/host/host_checks.cpp": KERNEL,
-    "common/bus/host/port_check.cpp": KERNEL,
+    "common/bus/port_check.cpp": KERNEL,
     "common/bus/host/ring_folder.cpp": "/dev/shm, without following links",
     "common/bus/host/shm_folder.hpp": "/dev/shm",
     "common/bus/host/shm_leftovers.cpp": KERNEL + ", /dev/shm",

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/report/report.hpp"
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -11,7 +9,7 @@
 #include <regex>
 #include <sstream>
 
-#include "services/evaluation/core/report/map_page_of_run.hpp"
+#include "services/evaluation/core/report/report.hpp"
 #include "tests/support/evaluation_page/rendered.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/page_data.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "services/filter/core/modes/mode_judge.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 

@@ -5,7 +5,7 @@
 #include "common/process/posix_process_host.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/process/service_logs.hpp"
-#include "services/launcher/process/usage_book.hpp"
+#include "services/launcher/process/usage_registry.hpp"
 
 namespace rtd::launcher {
 namespace {

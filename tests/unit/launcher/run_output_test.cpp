@@ -6,7 +6,7 @@
 
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
-#include "services/launcher/process/usage_book.hpp"
+#include "services/launcher/process/usage_registry.hpp"
 #include "tests/support/frame_list.hpp"
 
 namespace rtd::launcher {
@@ -103,8 +103,8 @@ TEST(terminal, leaves_out_what_is_not_read_and_says_so) {
   EXPECT_EQ(out.str(), "filter died\n  (2 messages left out, because the output was not read)\ncamera died\n");
 }
 
-TEST(usage_book, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
-  UsageBook book;
+TEST(usage_registry, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
+  UsageRegistry book;
   book.add_sample("slam", 100);
   book.add_sample("slam", 90);
   book.add_exit("slam", {0, 9, 2.0, 500});
@@ -117,8 +117,8 @@ TEST(usage_book, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
   EXPECT_EQ(usage.restarts, 1);
 }
 
-TEST(usage_book, a_process_too_short_to_be_sampled_is_taken_from_the_kernels_account) {
-  UsageBook book;
+TEST(usage_registry, a_process_too_short_to_be_sampled_is_taken_from_the_kernels_account) {
+  UsageRegistry book;
   book.add_sample("camera", -1);
   book.add_exit("camera", {0, 0, 0.1, 30});
   EXPECT_DOUBLE_EQ(book.usage().at("camera").peak_rss_mb, 30);

@@ -50,7 +50,7 @@ class RobotRecording : public ::testing::Test {
     setup.services.motion = motion_;
     setup.services.base.camera = camera_in_base_;
     look_at_source(setup);
-    return setup.beside;
+    return setup.sensor_topics;
   }
   std::vector<std::string> beside() { return beside(file_.uri()); }
 

@@ -77,7 +77,7 @@ class RecordingTest : public ::testing::Test {
 
   std::uint64_t disk_size_ = 1 << 30;
   std::vector<std::shared_ptr<SmallDisk>> disks_;
-  TopicBook book_;
+  TopicRegistry book_;
   SyncThread sync_{0ms};
   std::optional<Recording> recording_;
   std::uint32_t sequence_ = 0;

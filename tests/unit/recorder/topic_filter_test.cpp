@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/recorder/core/topic_book.hpp"
+#include "services/recorder/core/topic_registry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/ros2/type_layout.hpp"
+#include "common/ros2/type_description.hpp"
 
 #include <gtest/gtest.h>
 

@@ -30,7 +30,7 @@ struct Sample {
     binder.field("enabled", enabled, "switch").option("--enabled");
     binder.field("count", count, {1, 2048}, "how many").option("-c,--count", "Numbers");
     binder.choice("mode", mode, {"off", "rtd"}, "mode", {{"none", "off"}}).option("--mode");
-    binder.field("names", names, "list").option("--names");
+    binder.field("names", names, "list").formerly("filter.words").option("--names");
     binder.field("levels", levels, "map");
     binder.section("nested", nested);
   }
@@ -107,6 +107,11 @@ TEST_F(ConfigTest, choice_lists_what_is_allowed) {
 TEST_F(ConfigTest, former_name_of_a_choice_is_read_as_the_present_one) {
   EXPECT_EQ(error_of("filter: {mode: none}"), "no error");
   EXPECT_EQ(sample_.mode, "off");
+}
+
+TEST_F(ConfigTest, former_key_is_read_as_the_present_one) {
+  EXPECT_EQ(error_of("filter: {words: [b, c]}"), "no error");
+  EXPECT_THAT(sample_.names, ::testing::ElementsAre("b", "c"));
 }
 
 TEST_F(ConfigTest, broken_yaml_names_the_line) {
@@ -210,8 +215,9 @@ TEST_F(OptionsTest, a_value_that_is_not_allowed_names_the_option) {
 }
 
 TEST_F(OptionsTest, help_comes_from_the_settings) {
-  EXPECT_THAT(app_.help(), AllOf(ContainsRegex(R"(-c,--count INT(=1000| \[1000\]))"), HasSubstr("How many (filter.count)"),
-                                 HasSubstr("Numbers:"), ContainsRegex(R"(--mode TEXT:\{off,rtd\}(=rtd| \[rtd\]))")))
+  EXPECT_THAT(app_.help(),
+              AllOf(ContainsRegex(R"(-c,--count INT(=1000| \[1000\]))"), HasSubstr("How many (filter.count)"),
+                    HasSubstr("Numbers:"), ContainsRegex(R"(--mode TEXT:\{off,rtd\}(=rtd| \[rtd\]))")))
       << "a default as CLI11 2.1 or 2.4 writes it";
   EXPECT_THAT(app_.help(), ::testing::Not(HasSubstr("nested")));
 }

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/service/dds_environment.hpp"
-
 #include <gmock/gmock.h>
 
 #include <map>
+
+#include "common/service/bus_config.hpp"
 
 namespace rtd::service {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/robot_base.hpp"
+#include "services/slam/camera_tree.hpp"
 
 #include <gmock/gmock.h>
 

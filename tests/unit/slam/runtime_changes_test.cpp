@@ -48,9 +48,7 @@ class RunningSlam : public ::testing::Test {
     events_ = 0;
   }
   static io::Bytes bytes_of(const SlamSystem& slam) {
-    io::Bytes bytes;
-    slam.read_map([&](const Map& map) { bytes = bytes_of_map(map); });
-    return bytes;
+    return slam.read_map([](const Map& map) { return bytes_of_map(map); });
   }
   static double error_m(const SlamOutput& output, std::uint64_t seq, std::uint64_t origin = 0) {
     const Eigen::Isometry3d T_origin_camera =

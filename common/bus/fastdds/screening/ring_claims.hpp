@@ -11,7 +11,7 @@
 
 namespace rtd::bus {
 
-/// What RTPS messages say of our rings. Fast DDS believes each endpoint that announces their id: a reader that has
+/// What RTPS messages say about our rings. Fast DDS believes each endpoint that announces their id: a reader that has
 /// nothing in our folder then makes a writer look forever for an address to send a frame to. Immutable.
 class RingClaims {
  public:

@@ -10,7 +10,7 @@
 
 #include "common/io/bytes.hpp"
 #include "common/io/input_file.hpp"
-#include "services/evaluation/core/integrity/integrity.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -46,7 +46,7 @@ struct Experiment {
   std::vector<Subject> subjects;
   std::vector<Variant> variants;
   int runs = 1;          ///< of each
-  int jobs = 1;          ///< runs beside each other
+  int jobs = 1;          ///< runs next to each other
   bool repeats = false;  ///< the runs of a variant are to give the same bytes
   bool complete = false;
   std::vector<ExperimentRun> results;
@@ -82,7 +82,7 @@ inline constexpr const char* kMeanName = "mean";
 /// that has all its sequences also the row kMeanName of each variant: the mean of their medians.
 std::vector<ExperimentRow> summarize(const Experiment& experiment);
 
-/// What a row is beside the same row of another experiment.
+/// What a row is next to the same row of another experiment.
 struct Change {
   double before_m = 0, now_m = 0;  ///< median ATE
   /// "better" or "worse" when the ranges of at least three runs each do not overlap, else empty

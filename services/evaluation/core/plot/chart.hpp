@@ -5,9 +5,77 @@
 #include <string>
 #include <vector>
 
-#include "services/evaluation/core/plot/svg.hpp"
-
 namespace rtd::plot {
+
+/// Colours, for a white background and distinct for colour-blind readers.
+namespace palette {
+inline constexpr const char* kInk = "#1c2733";
+inline constexpr const char* kMuted = "#64727f";
+inline constexpr const char* kGrid = "#e7ebef";
+inline constexpr const char* kFrame = "#b9c2cb";
+inline constexpr const char* kBlue = "#2367a8";
+inline constexpr const char* kGreen = "#2d9c5f";
+inline constexpr const char* kAmber = "#dd8a1d";
+inline constexpr const char* kTruth = "#9aa5b1";
+}  // namespace palette
+
+/// Colour of an error on a scale from 0 (blue, good) over green and amber to 1 (red); clamped. "#rrggbb".
+std::string error_colour(double fraction);
+
+/// A position on the drawing, px, y down.
+struct Point {
+  double x = 0, y = 0;
+};
+
+/// An area of the drawing, px.
+struct Area {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+
+struct Stroke {
+  std::string colour;
+  double width = 1;
+  std::string dashes = "";  ///< e.g. "4 3"
+  double opacity = 1;
+};
+
+enum class Anchor { kStart, kMiddle, kEnd };
+
+struct TextStyle {
+  std::string colour = "#64727f";
+  double size = 12;
+  Anchor anchor = Anchor::kStart;
+  bool bold = false;
+  double rotation_deg = 0;
+};
+
+/// Text made safe for HTML and SVG: & < > " ' escaped, control characters replaced.
+std::string escape_markup(const std::string& text);
+
+/// Writes one SVG drawing. Shapes with coordinates that are not finite are left out, so that a bad number cannot break
+/// a page.
+class Svg {
+ public:
+  /// label: what the drawing shows, for screen readers.
+  Svg(double width, double height, const std::string& label);
+
+  void line(Point from, Point to, const Stroke& stroke);
+  void polyline(const std::vector<Point>& points, const Stroke& stroke);
+  void rect(const Area& area, const std::string& fill, double opacity = 1, double radius = 0);
+  void circle(Point centre, double radius, const std::string& fill, const Stroke& outline = {"none", 0});
+  /// Many round dots of one colour in one element.
+  void dots(const std::vector<Point>& centres, double diameter, const std::string& colour, double opacity = 1);
+  void text(Point at, const std::string& content, const TextStyle& style = {});
+
+  /// The drawing, scalable to the width of its container.
+  std::string str() const;
+  /// The drawing as a complete SVG file.
+  std::string document() const;
+
+ private:
+  double width_, height_;
+  std::string label_, body_;
+};
 
 struct Range {
   double min = 0, max = 1;

@@ -4,13 +4,25 @@
 
 #include <filesystem>
 #include <functional>
+#include <istream>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "common/map_page/map_page.hpp"
 #include "services/evaluation/core/report/run_summary.hpp"
 
 namespace rtd::eval {
+
+/// The points of static_map.ply as dense writes it; none of any other file.
+map_page::Layer read_static_map(std::istream& in);
+
+/// The points of a PLY text file as slam writes its landmarks (map.ply): x y z first, metres, at most `most`, evenly
+/// spread. Empty for any other file.
+std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most);
+
+/// What a run left, to look at in a browser: the dense map if there is one, landmarks, path and ground truth.
+map_page::Page map_page_of(const Run& run, const RunSummary& summary);
 
 /// Reads run.json and finds the other files of the run in `folder`. Throws RunFileError.
 Run load_run(const std::string& folder);
@@ -41,7 +53,7 @@ struct ComparedRun {
   Run run;
 };
 
-/// A self-contained page that shows runs of the same source beside each other: trajectories in one plot against the
+/// A self-contained page that shows runs of the same source next to each other: trajectories in one plot against the
 /// ground truth, errors over time, numbers, sample frames. The first run is the baseline.
 std::string comparison_html(const std::vector<ComparedRun>& runs);
 

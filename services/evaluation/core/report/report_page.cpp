@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/vision/jpeg_size.hpp"
-#include "services/evaluation/core/integrity/integrity_text.hpp"
 #include "services/evaluation/core/report/report.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
+#include "services/evaluation/core/trajectory/integrity_text.hpp"
 #include "services/evaluation/page/page.hpp"
 
 namespace rtd::eval {

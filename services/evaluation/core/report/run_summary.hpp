@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/run_record/run_record.hpp"
-#include "services/evaluation/core/integrity/integrity.hpp"
 #include "services/evaluation/core/removal/removal.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "services/evaluation/core/integrity/integrity_text.hpp"
+#include "services/evaluation/core/trajectory/integrity_text.hpp"
 
 namespace rtd::eval {
 namespace {

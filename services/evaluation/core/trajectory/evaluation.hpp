@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "services/evaluation/core/integrity/drift.hpp"
 #include "services/evaluation/core/trajectory/body_offset.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/trajectory.hpp"
-#include "services/evaluation/core/integrity/published_pose.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 

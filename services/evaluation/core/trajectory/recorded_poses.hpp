@@ -8,7 +8,7 @@
 
 #include "common/geometry/trajectory.hpp"
 #include "common/recordings/reader.hpp"
-#include "services/evaluation/core/integrity/published_pose.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 

@@ -3,12 +3,104 @@
 #include "services/filter/core/belief/static_probability.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "common/vision/samples.hpp"
 #include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {
+
+/// Variance of the median of normal values, by their median absolute deviation.
+float median_variance(const std::vector<float>& values, float middle) {
+  constexpr float kSigmaPerMad = 1.4826F, kMedianVariance = 1.5708F;  // pi / 2 times that of the mean
+  std::vector<float> deviations;
+  deviations.reserve(values.size());
+  for (const float value : values) deviations.push_back(std::abs(value - middle));
+  const float sigma = kSigmaPerMad * vision::median(std::move(deviations));
+  return kMedianVariance * sigma * sigma / static_cast<float>(values.size());
+}
+
+ObjectMotion judge(const SceneObject& object, const MotionEvidence& evidence, const VotesByCell& votes,
+                   const BeliefConfig& config) {
+  int dynamic = 0, lasting = 0, resting = 0, moving = 0;
+  for (const int at : object.cells) {
+    const auto cell = static_cast<std::size_t>(at);
+    dynamic += evidence.regions.hold_cs[cell] > 0 ? 1 : 0;
+    lasting += evidence.depth.lasting[cell] > 0 ? 1 : 0;
+    resting += votes.resting[cell];
+    moving += votes.moving[cell];
+  }
+  const auto cells = static_cast<double>(object.cells.size());
+  if (dynamic >= config.min_moving_cells * cells) return ObjectMotion::kMoving;
+  if (moving >= config.min_moving_votes && moving >= config.min_moving_votes_share * (moving + resting))
+    return ObjectMotion::kMoving;
+  if (object.level == MotionLevel::kHigh && drifts(drift_of(object.cells, evidence.votes, votes.moving.size()), config))
+    return ObjectMotion::kMoving;
+  const bool features_rest = resting >= config.min_resting_votes && resting >= config.min_resting_ratio * moving;
+  if (dynamic <= config.max_dynamic_cells * cells && lasting >= config.min_lasting_cells * cells && features_rest)
+    return ObjectMotion::kResting;
+  return ObjectMotion::kUnknown;
+}
+
+/// How the belief in surfaces of one motion level behaves, per step of this frame.
+struct Pace {
+  float prior;
+  float gain;   ///< log-odds that a frame of rest adds
+  float limit;  ///< rest alone lifts it no higher
+};
+
+/// The numbers of the config for a frame that took this long.
+class BeliefStep {
+ public:
+  BeliefStep(const BeliefInput& input, const BeliefConfig& config, const Techniques& techniques)
+      : input_(input), techniques_(techniques), lowest_(log_odds(config.lowest_probability)) {
+    constexpr double kLongestStepS = 0.2;  // a pause of the camera is no evidence
+    const double step_s = std::clamp(input.elapsed_s, 0.0, kLongestStepS);
+    const auto highest = log_odds(config.highest_probability);
+    const auto gain = static_cast<float>(config.gain_per_s * step_s),
+               high_gain = static_cast<float>(config.high_gain_per_s * step_s);
+    background_ = {log_odds(config.background_prior), gain, highest};
+    medium_ = {log_odds(config.medium_prior), gain, highest};
+    high_ = {log_odds(config.high_prior), high_gain, log_odds(config.high_limit)};
+    forgotten_ = static_cast<float>(1 - std::exp(-step_s / config.forget_s));
+    if (!techniques.belief) background_.gain = medium_.gain = highest - lowest_;  // one frame decides
+    if (!techniques.belief || !techniques.resting_objects) high_.gain = 0;
+  }
+
+  float operator()(std::size_t cell, float recalled) const {
+    const std::int16_t on = input_.object_on[cell];
+    const SceneObject* object = on < 0 ? nullptr : &input_.objects[static_cast<std::size_t>(on)];
+    const ObjectMotion motion = on < 0 ? ObjectMotion::kUnknown : input_.motions[static_cast<std::size_t>(on)];
+    const Pace& pace = pace_of(object);
+    const bool never_used = object != nullptr && object->level == MotionLevel::kHigh && !techniques_.resting_objects;
+    const float before = !is_known(recalled) ? pace.prior : never_used ? std::min(recalled, pace.prior) : recalled;
+    const MotionEvidence& evidence = input_.evidence;
+    if (evidence.regions.hold_cs[cell] > 0 || motion == ObjectMotion::kMoving) return lowest_;
+    if (!evidence.regions.trusted) return before;
+    if (evidence.depth.violated[cell] == 0 && rests(cell, object, motion))
+      return std::min(before + pace.gain, std::max(before, pace.limit));
+    return before + forgotten_ * (pace.prior - before);
+  }
+
+ private:
+  const Pace& pace_of(const SceneObject* object) const {
+    if (object == nullptr || object->level == MotionLevel::kLow) return background_;
+    return object->level == MotionLevel::kHigh ? high_ : medium_;
+  }
+  /// An object rests as a whole or not at all: the inside of a slow mover looks as if it had always been there.
+  bool rests(std::size_t cell, const SceneObject* object, ObjectMotion motion) const {
+    if (object != nullptr && object->level != MotionLevel::kLow) return motion == ObjectMotion::kResting;
+    return input_.evidence.depth.consistent[cell] > 0 || input_.evidence.depth.lasting[cell] > 0;
+  }
+
+  const BeliefInput& input_;
+  const Techniques& techniques_;
+  float lowest_;
+  float forgotten_ = 0;
+  Pace background_{}, medium_{}, high_{};
+};
 
 constexpr float kMovingProbability = 0.02F;  // geometry sees it move
 
@@ -116,6 +208,57 @@ void weigh_alike(std::vector<msg::Feature>& features) {
 }
 
 }  // namespace
+
+ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells) {
+  std::vector<char> on(grid_cells, 0);
+  for (const int cell : cells) on[static_cast<std::size_t>(cell)] = 1;
+  std::vector<float> x_px, y_px;
+  for (const FeatureShift& shift : votes.shifts) {
+    if (on[static_cast<std::size_t>(shift.cell)] == 0) continue;
+    x_px.push_back(shift.x_px);
+    y_px.push_back(shift.y_px);
+  }
+  if (x_px.empty()) return {};
+  const float x = vision::median(x_px), y = vision::median(y_px);
+  return {static_cast<int>(x_px.size()), std::hypot(x, y),
+          std::sqrt(median_variance(x_px, x) + median_variance(y_px, y))};
+}
+
+bool drifts(const ObjectDrift& drift, const BeliefConfig& config) {
+  return drift.features >= config.min_resting_votes &&
+         drift.shift_px > config.drift_sigmas * std::hypot(static_cast<double>(drift.sigma_px), config.drift_floor_px);
+}
+
+std::vector<ObjectMotion> judge_objects(const std::vector<SceneObject>& objects, const MotionEvidence& evidence,
+                                        const BeliefConfig& config) {
+  std::vector<ObjectMotion> motions(objects.size(), ObjectMotion::kUnknown);
+  if (!evidence.regions.trusted || objects.empty()) return motions;
+  const VotesByCell votes = by_cell(evidence.votes, evidence.regions.hold_cs.size());
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    if (!objects[i].cells.empty()) motions[i] = judge(objects[i], evidence, votes, config);
+  }
+  return motions;
+}
+
+std::vector<std::int16_t> objects_on_cells(const GridShape& shape, const std::vector<SceneObject>& objects) {
+  std::vector<std::int16_t> on(static_cast<std::size_t>(shape.size()), -1);
+  for (const MotionLevel level : {MotionLevel::kLow, MotionLevel::kMedium, MotionLevel::kHigh}) {
+    for (std::size_t k = 0; k < objects.size(); ++k) {
+      if (objects[k].level != level || objects[k].flat) continue;
+      for_each_covered_cell(objects[k], [&](std::size_t cell) { on[cell] = static_cast<std::int16_t>(k); });
+    }
+  }
+  return on;
+}
+
+CellBeliefs update_beliefs(CellBeliefs recalled, const BeliefInput& input, const BeliefConfig& config,
+                           const Techniques& techniques) {
+  const BeliefStep step(input, config, techniques);
+  for (std::size_t cell = 0; cell < recalled.size(); ++cell) {
+    recalled[cell] = step(cell, techniques.belief ? recalled[cell] : kNoBelief);
+  }
+  return recalled;
+}
 
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config) {

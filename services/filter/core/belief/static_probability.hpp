@@ -5,12 +5,62 @@
 #include <vector>
 
 #include "common/msg/features.hpp"
-#include "services/filter/core/belief/belief_update.hpp"
+#include "services/filter/core/belief/surface_beliefs.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
+#include "services/filter/core/motion/feature_votes.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
 
 namespace rtd::filter {
+
+/// How far an object as a whole has moved in the image against the static world.
+struct ObjectDrift {
+  int features = 0;
+  float shift_px = 0;  ///< length of the median displacement of its features
+  float sigma_px = 0;  ///< its standard deviation, from the spread of the features
+};
+
+/// The drift of the features on these cells. The median of n features is sqrt(n) times more precise than each of them,
+/// and waving arms in front of a trunk at rest do not change it.
+ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, std::size_t grid_cells);
+
+/// Is the shift larger than the noise of the features and of the pose?
+bool drifts(const ObjectDrift& drift, const BeliefConfig& config);
+
+/// What geometry finds out about an object with a class in this frame.
+enum class ObjectMotion { kUnknown, kMoving, kResting };
+
+/// All that geometry found out about a frame.
+struct MotionEvidence {
+  const DynamicRegions& regions;
+  const DepthEvidence& depth;
+  const FeatureVotes& votes;
+};
+
+/// Per object. kMoving: enough of its cells are dynamic, or enough of its features are displaced. kResting: hardly a
+/// cell is dynamic, enough of them were there 0.4 s ago, and its features are at their place. docs/theory/
+/// dynamic_points.md section 5.
+std::vector<ObjectMotion> judge_objects(const std::vector<SceneObject>& objects, const MotionEvidence& evidence,
+                                        const BeliefConfig& config);
+
+/// The object on each cell, -1 = none, not grown. Where masks overlap the higher level wins: a monitor behind a person
+/// is left to geometry, the person is not. Flat objects are pictures: they cover no cell.
+std::vector<std::int16_t> objects_on_cells(const GridShape& shape, const std::vector<SceneObject>& objects);
+
+/// What a frame adds to the beliefs.
+struct BeliefInput {
+  const std::vector<SceneObject>& objects;
+  const std::vector<ObjectMotion>& motions;    ///< per object
+  const std::vector<std::int16_t>& object_on;  ///< per cell, objects_on_cells()
+  const MotionEvidence& evidence;
+  double elapsed_s;  ///< since the last frame
+};
+
+/// One step of the recursive Bayesian filter, docs/theory/dynamic_points.md Eq. (6)-(8): what was believed of each cell
+/// (`recalled`), or the prior of its class where nothing was, and the evidence of this frame. Log-odds.
+CellBeliefs update_beliefs(CellBeliefs recalled, const BeliefInput& input, const BeliefConfig& config,
+                           const Techniques& techniques);
 
 /// All that is known about a frame when its features are judged.
 struct FrameKnowledge {

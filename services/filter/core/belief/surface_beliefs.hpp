@@ -40,7 +40,7 @@ class SurfaceBeliefs {
   void clear() { beliefs_.clear(); }
 
   /// Looks up every measured cell of the current frame where `T_last_current` puts it in the last one; the depth there
-  /// must agree within `tolerance_m`, at the cell or at one beside it. `rays`: viewing rays of the cells at z = 1.
+  /// must agree within `tolerance_m`, at the cell or at one next to it. `rays`: viewing rays of the cells at z = 1.
   /// `where`, if given: only cells that are not 0 there.
   CellBeliefs recall(const DepthGrid& grid, const std::vector<Eigen::Vector3f>& rays,
                      const geometry::CameraModel& camera, const Eigen::Isometry3d& T_last_current,

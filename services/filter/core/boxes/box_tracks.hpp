@@ -13,8 +13,8 @@
 #include "common/vision/detection.hpp"
 #include "common/vision/person_masks.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
-#include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/surfaces/box_mask.hpp"
+#include "services/filter/core/config/filter_config.hpp"
+#include "services/filter/core/surfaces/cell_masks.hpp"
 
 namespace rtd::filter {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "common/vision/detection.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 

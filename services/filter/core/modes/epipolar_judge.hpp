@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 
 namespace rtd::filter {

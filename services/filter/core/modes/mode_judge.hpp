@@ -10,7 +10,7 @@
 #include "common/msg/features.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/filter/core/boxes/mover_tracks.hpp"
-#include "services/filter/core/motion/gyroscope.hpp"
+#include "services/filter/core/motion/ego_motion.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/surfaces/object_masks.hpp"
 

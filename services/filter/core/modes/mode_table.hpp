@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 

@@ -61,16 +61,16 @@ std::vector<int> clusters_of(const std::vector<msg::Feature>& features, const De
 
 /// How dynamic points are found: where the camera is, what moves, how probably each feature is static.
 Verdict RtdJudge::judge(const Scene& scene, std::vector<msg::Feature> features, StageClock& clock) {
-  const Foreground foreground = separate_foreground(scene);  // what may move, by its class
-  Questions questions = ask(scene, foreground, features);    // what may be carried, after a start
+  const Foreground foreground = separate_foreground(scene);                   // what may move, by its class
+  UndecidedSurfaces undecided = find_undecided(scene, foreground, features);  // what may be carried, after a start
   clock.finish(msg::kStageMasks);
-  const EgoMotion ego = find_ego_motion(scene, foreground, features, questions);
+  const EgoMotion ego = find_ego_motion(scene, foreground, features, undecided);
   clock.finish(msg::kStageEgoMotion);
   const DepthEvidence evidence = compare_with_views(scene, foreground, ego);  // the multi-view check
-  const DynamicRegions regions = find_regions(scene, foreground, questions, ego, evidence);
+  const DynamicRegions regions = find_regions(scene, foreground, undecided, ego, evidence);
   std::vector<Mover> movers = follow_movers(scene, foreground, ego, regions);
   clock.finish(msg::kStageDepthCheck);
-  features = weigh(scene, {questions.open, regions, evidence, ego}, std::move(features));  // to one probability
+  features = weigh(scene, {undecided.open, regions, evidence, ego}, std::move(features));  // to one probability
   clock.finish(msg::kStageFuse);
   const CellMask dynamic = dynamic_cells(scene, foreground, regions);
   remember(scene, ego, regions, dynamic, features);
@@ -160,7 +160,8 @@ RememberedMotion RtdJudge::recall_movers(const Scene& scene, const Foreground& f
 }
 
 /// People are left to their class, movers to the memory of them.
-Questions RtdJudge::ask(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features) {
+UndecidedSurfaces RtdJudge::find_undecided(const Scene& scene, const Foreground& foreground,
+                                           const std::vector<msg::Feature>& features) {
   const bool asks = uses_geometry() && config_.techniques.feature_votes;
   if (!asks || views_.spans(scene.image.stamp_ns, kQuestionsNs))
     return {CellMask(foreground.high.size(), 0), CellMask(foreground.high.size(), 0)};
@@ -168,16 +169,16 @@ Questions RtdJudge::ask(const Scene& scene, const Foreground& foreground, const 
   if (!views_.empty()) {
     const Eigen::Isometry3d T_world_predicted = predict_pose(scene);
     excluded = united(std::move(excluded), recall_movers(scene, foreground, T_world_predicted).hold_cs);
-    questions_.recall(scene.surfaces.grid, scene.image.camera,
+    decisions_.recall(scene.surfaces.grid, scene.image.camera,
                       T_world_predicted.inverse() * views_.newest().T_world_camera,
                       msg::minus_s(scene.image.stamp_ns, views_.newest().stamp_ns));
   }
-  return questions_.ask({scene.surfaces.grid, scene.surfaces.rays, foreground.clusters, features}, excluded,
-                        config_.masks.min_outline_step_m);
+  return decisions_.find({scene.surfaces.grid, scene.surfaces.rays, foreground.clusters, features}, excluded,
+                         config_.masks.min_outline_step_m);
 }
 
 EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foreground,
-                                    const std::vector<msg::Feature>& features, Questions& questions) {
+                                    const std::vector<msg::Feature>& features, UndecidedSurfaces& undecided) {
   if (!compares()) return {};
   const GridShape& shape = scene.shape();
   const Eigen::Isometry3d T_world_predicted = predict_pose(scene);
@@ -199,9 +200,9 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
                              T_world_predicted,
                              look_back_ns(views_.newest().stamp_ns, scene.image.stamp_ns),
                              scene.gyroscope};
-  if (const std::vector<char> in_question = features_on(questions.open, features, shape); any(in_question)) {
-    questions_.answer(questions, foreground.clusters, vote_on_surfaces(input, in_question, config_.ego_motion));
-    const CellMask doubted = dilate(shape, united(questions.open, questions.moving), 1);
+  if (const std::vector<char> in_question = features_on(undecided.open, features, shape); any(in_question)) {
+    decisions_.update(undecided, foreground.clusters, vote_on_surfaces(input, in_question, config_.ego_motion));
+    const CellMask doubted = dilate(shape, united(undecided.open, undecided.moving), 1);
     const std::vector<char> on_doubted = features_on(doubted, features, shape);
     for (std::size_t i = 0; i < excluded.size(); ++i) excluded[i] = std::max(excluded[i], on_doubted[i]);
   }
@@ -225,16 +226,17 @@ DepthEvidence RtdJudge::compare_with_views(const Scene& scene, const Foreground&
 
 /// Features of what is in question have votes of their own, which know how uncertain the pose without it is. Its depth
 /// is compared as that of everything else.
-DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground, const Questions& questions,
-                                      const EgoMotion& ego, const DepthEvidence& evidence) const {
+DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground,
+                                      const UndecidedSurfaces& undecided, const EgoMotion& ego,
+                                      const DepthEvidence& evidence) const {
   if (!compares()) return {false, CellMask(static_cast<std::size_t>(scene.shape().size()), 0), 0};
-  const FeatureVotes quick = without_votes_on(questions.open, ego.votes, foreground.clusters);
-  const FeatureVotes slow = without_votes_on(questions.open, ego.slow_votes, foreground.clusters);
+  const FeatureVotes quick = without_votes_on(undecided.open, ego.votes, foreground.clusters);
+  const FeatureVotes slow = without_votes_on(undecided.open, ego.slow_votes, foreground.clusters);
   DynamicRegions regions = find_dynamic_regions(foreground.clusters, evidence, {quick, slow},
                                                 recall_movers(scene, foreground, ego.T_world_camera), config_.geometry);
   regions.trusted = regions.trusted && ego.reliable;
   for (std::size_t cell = 0; cell < regions.hold_cs.size(); ++cell) {
-    if (questions.moving[cell] != 0) regions.hold_cs[cell] = to_cs(config_.geometry.memory_s);
+    if (undecided.moving[cell] != 0) regions.hold_cs[cell] = to_cs(config_.geometry.memory_s);
   }
   return regions;
 }
@@ -267,7 +269,7 @@ std::vector<msg::Feature> RtdJudge::weigh(const Scene& scene, const Findings& fo
     if (found.in_question[cell] != 0) beliefs[cell] = kNoBelief;  // nothing was learnt about it
   }
   beliefs_.store(scene.surfaces.grid, std::move(beliefs));
-  questions_.store(scene.surfaces.grid, scene.surfaces.rays);
+  decisions_.store(scene.surfaces.grid, scene.surfaces.rays);
   return features;
 }
 
@@ -314,7 +316,7 @@ void RtdJudge::reset() {
   memory_.clear();
   movers_.clear();
   beliefs_.clear();
-  questions_.clear();
+  decisions_.clear();
 }
 
 }  // namespace rtd::filter

@@ -6,7 +6,7 @@
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"
-#include "services/filter/core/motion/surface_questions.hpp"
+#include "services/filter/core/motion/undecided_surfaces.hpp"
 
 namespace rtd::filter {
 
@@ -31,11 +31,12 @@ class RtdJudge final : public ModeJudge {
     CellMask may_move;       ///< the same, without those that are known to rest
   };
   Foreground separate_foreground(const Scene& scene) const;
-  Questions ask(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features);
+  UndecidedSurfaces find_undecided(const Scene& scene, const Foreground& foreground,
+                                   const std::vector<msg::Feature>& features);
   EgoMotion find_ego_motion(const Scene& scene, const Foreground& foreground, const std::vector<msg::Feature>& features,
-                            Questions& questions);
+                            UndecidedSurfaces& undecided);
   DepthEvidence compare_with_views(const Scene& scene, const Foreground& foreground, const EgoMotion& ego) const;
-  DynamicRegions find_regions(const Scene& scene, const Foreground& foreground, const Questions& questions,
+  DynamicRegions find_regions(const Scene& scene, const Foreground& foreground, const UndecidedSurfaces& undecided,
                               const EgoMotion& ego, const DepthEvidence& evidence) const;
   std::vector<Mover> follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
                                    const DynamicRegions& regions);
@@ -72,7 +73,7 @@ class RtdJudge final : public ModeJudge {
   DynamicMemory memory_;
   MoverTracks movers_;
   SurfaceBeliefs beliefs_;
-  SurfaceQuestions questions_;
+  SurfaceDecisions decisions_;
 };
 
 }  // namespace rtd::filter

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 

@@ -9,7 +9,6 @@
 #include "services/filter/core/motion/depth_check.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {

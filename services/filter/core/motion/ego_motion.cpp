@@ -3,6 +3,7 @@
 #include "services/filter/core/motion/ego_motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -129,6 +130,18 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
 }
 
 }  // namespace
+
+void Gyroscope::add(inertial::ImuSample sample) {
+  sample.stamp_ns = msg::plus_ns(sample.stamp_ns, msg::ns_of(config_.time_offset_s));
+  samples_.add(sample);
+}
+
+std::optional<inertial::CameraTurn> Gyroscope::turn(std::int64_t from_ns, std::int64_t to_ns) const {
+  const auto motion = samples_.integrate(from_ns, to_ns, {}, {config_.noise_rad_s_rthz, 0});
+  if (!motion) return std::nullopt;
+  const Eigen::Matrix3d bias = std::pow(config_.bias_rad_s, 2) * Eigen::Matrix3d::Identity();
+  return inertial::turn_of_camera(*motion, config_.R_camera_imu, {bias, config_.scale_error});
+}
 
 KnownRotation rotation_since(const View& view, const EgoMotionInput& input) {
   if (input.gyroscope == nullptr) return std::nullopt;

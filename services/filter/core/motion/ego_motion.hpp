@@ -4,18 +4,37 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "common/geometry/camera_model.hpp"
+#include "common/inertial/preintegration.hpp"
 #include "common/vision/features.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
+#include "services/filter/core/config/motion_config.hpp"
 #include "services/filter/core/motion/feature_votes.hpp"
-#include "services/filter/core/motion/gyroscope.hpp"
 #include "services/filter/core/motion/static_consensus.hpp"
 #include "services/filter/core/motion/view_store.hpp"
 
 namespace rtd::filter {
+
+/// Turns of the camera from the samples of an IMU. docs/theory/dynamic_points.md section 2. Not thread-safe.
+class Gyroscope {
+ public:
+  explicit Gyroscope(const GyroscopeConfig& config) : config_(config) {}
+
+  void add(inertial::ImuSample sample);
+  /// Empty when the samples do not cover the span.
+  std::optional<inertial::CameraTurn> turn(std::int64_t from_ns, std::int64_t to_ns) const;
+  /// Everything older than any view is forgotten.
+  void forget_before(std::int64_t stamp_ns) { samples_.forget_before(stamp_ns); }
+  void clear() { samples_.clear(); }
+
+ private:
+  GyroscopeConfig config_;
+  inertial::ImuStream samples_;
+};
 
 /// A feature of a reference view found again in the current frame.
 struct FeatureMatch {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "services/filter/core/motion/static_consensus.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 

@@ -9,7 +9,7 @@
 #include "common/geometry/camera_model.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/vision/pose_optimizer.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/vision/samples.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
+#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -148,8 +148,8 @@ Body best_body(const CellBox& box, const SurfacesInBox& inside) {
 
 /// Gives each surface to the object whose box it fills best. Of two boxes that overlap, both masks show the nearer
 /// body; here the farther one is found by its own size. Where nothing fits, the mask is left as it is.
-std::vector<std::vector<int>> share_out(const std::vector<MovingSurface>& surfaces,
-                                        const std::vector<SceneObject>& objects, const GridShape& shape) {
+std::vector<std::vector<int>> assign_surfaces(const std::vector<MovingSurface>& surfaces,
+                                              const std::vector<SceneObject>& objects, const GridShape& shape) {
   constexpr double kMinFit = 0.3;
   std::vector<std::vector<int>> cells_of;
   std::vector<SurfacesInBox> inside;  // per object; without those that are given away
@@ -245,7 +245,7 @@ std::uint8_t tint_of(const cv::Vec3b& bgr) {
   return static_cast<std::uint8_t>(2 * hue + (saturation >= kStrong ? 1 : 0));
 }
 
-double unlike(const TintShares& a, const TintShares& b) {
+double histogram_distance(const ColorHistogram& a, const ColorHistogram& b) {
   if (a.isZero() || b.isZero()) return 0;
   return 1 - a.cwiseProduct(b).cwiseSqrt().sum();
 }
@@ -271,7 +271,7 @@ std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& object
     return cells;
   };
   const std::vector<MovingSurface> surfaces = find_moving_surfaces(objects, verdict, seen.grid);
-  const std::vector<std::vector<int>> cells_of = share_out(surfaces, objects, shape);
+  const std::vector<std::vector<int>> cells_of = assign_surfaces(surfaces, objects, shape);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const SceneObject& object = objects[i];
     if (object.flat || object.track_id < 0) continue;

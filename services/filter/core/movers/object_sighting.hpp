@@ -20,12 +20,12 @@ namespace rtd::filter {
 /// counts only where there is no hue, because light and exposure change it.
 inline constexpr int kTints = 19;
 /// How much of a surface has each tint, sum 1; all 0 = unknown.
-using TintShares = Eigen::Matrix<double, kTints, 1>;
+using ColorHistogram = Eigen::Matrix<double, kTints, 1>;
 
 std::uint8_t tint_of(const cv::Vec3b& bgr);
 
 /// Hellinger: 1 - sum sqrt(a b), 0 = the same, 1 = nothing in common; 0 if one of them is unknown.
-double unlike(const TintShares& a, const TintShares& b);
+double histogram_distance(const ColorHistogram& a, const ColorHistogram& b);
 
 struct SeenPoint {
   Eigen::Vector3d p_camera_m;
@@ -53,7 +53,7 @@ struct SeenCells {
 };
 
 /// Objects that are in view: tracked ones of a high level, others while they move, movers without a class, and surfaces
-/// that move beside all of these.
+/// that move besides all of these.
 std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& objects, const Verdict& verdict,
                                           const SeenCells& seen);
 

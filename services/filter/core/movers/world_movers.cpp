@@ -40,7 +40,7 @@ Matrix3d noise(const Vector3d& along, double sigma_across_m, double sigma_along_
 }
 
 /// Of the body, for one of a known thickness: a person who turns looks narrower or wider but is as thick as before.
-Vector3d body_of(const ObjectLook& look, double thickness_m) {
+Vector3d body_of(const ObjectAppearance& look, double thickness_m) {
   return look.body + 0.5 * (thickness_m - look.thickness_m) * look.view;
 }
 
@@ -84,7 +84,7 @@ int owner_of(const Vector3d& p_world, std::uint8_t tint, const std::vector<Expec
 struct WorldMovers::View {
   const std::vector<ObjectSighting>& sightings;
   Eigen::Isometry3d T_world_camera;
-  std::vector<ObjectLook> looks;                ///< at the surface of each sighting
+  std::vector<ObjectAppearance> looks;          ///< at the surface of each sighting
   std::vector<std::vector<double>> share;       ///< [sighting][track]: of this surface's points
   std::vector<std::vector<SeenPoints>> moving;  ///< [sighting][track]: of what moves in the box
   std::vector<char> taken;                      ///< per sighting: a track has it
@@ -115,13 +115,13 @@ void WorldMovers::predict(std::int64_t stamp_ns) {
 WorldMovers::View WorldMovers::look_around(const Eigen::Isometry3d& T_world_camera,
                                            const std::vector<ObjectSighting>& sightings) const {
   View view{sightings, T_world_camera, {}, {}, {}, std::vector<char>(sightings.size(), 0)};
-  for (const ObjectSighting& sighting : sightings) view.looks.push_back(look_at(sighting, T_world_camera));
-  share_out(view);
+  for (const ObjectSighting& sighting : sightings) view.looks.push_back(measure(sighting, T_world_camera));
+  assign_points(view);
   return view;
 }
 
 /// Each point to the body that it is expected of.
-void WorldMovers::share_out(View& view) const {
+void WorldMovers::assign_points(View& view) const {
   constexpr double kFarPerDecadeM = 0.2, kHardly = 0.01;  // metres for a tenth as much of a tint
   constexpr double kNotSeenM = 0.05, kLatelyS = 0.1;      // in doubt, a point is of a person in view
   std::vector<Expectation> expected;
@@ -152,7 +152,7 @@ void WorldMovers::share_out(View& view) const {
 
 /// A track in a sighting: its surface, if that is where the track is expected and not of another one; else what the
 /// track has of the rest. Of two boxes that overlap in the image, both show the nearer body's surface.
-std::optional<ObjectLook> WorldMovers::look_for(std::size_t track, std::size_t sighting, const View& view) const {
+std::optional<ObjectAppearance> WorldMovers::look_for(std::size_t track, std::size_t sighting, const View& view) const {
   constexpr double kLatelyS = 0.3;
   constexpr int kSomeHits = 3;
   constexpr std::size_t kFewPoints = 25;
@@ -165,7 +165,7 @@ std::optional<ObjectLook> WorldMovers::look_for(std::size_t track, std::size_t s
   if (!of_another && std::isfinite(cost_of(tracks_[track], seen, view.looks[sighting]))) return view.looks[sighting];
   const SeenPoints& rest = view.moving[sighting][track];
   if (rest.size() < kFewPoints) return std::nullopt;
-  return look_at(rest, !seen.class_name.empty(), view.T_world_camera);
+  return measure(rest, !seen.class_name.empty(), view.T_world_camera);
 }
 
 /// Tracks where they are expected.
@@ -173,7 +173,7 @@ void WorldMovers::follow(View& view) {
   constexpr double kMaxGateM = 1.5;
   const std::size_t tracks = tracks_.size(), sightings = view.sightings.size();
   CostMatrix costs(static_cast<int>(tracks), static_cast<int>(sightings));
-  std::vector<std::vector<std::optional<ObjectLook>>> looks(tracks);
+  std::vector<std::vector<std::optional<ObjectAppearance>>> looks(tracks);
   for (std::size_t i = 0; i < tracks; ++i) {
     for (std::size_t j = 0; j < sightings; ++j) {
       const auto& look = looks[i].emplace_back(look_for(i, j, view));
@@ -190,13 +190,13 @@ void WorldMovers::follow(View& view) {
 }
 
 /// By place, colour and class; the filter's own tracks separate those that are near each other.
-double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
+double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, const ObjectAppearance& look) {
   constexpr double kGateM = 0.4, kYoungM = 0.3, kGateGrowth_m_s = 0.8;
   constexpr double kOtherSourceM = 0.2, kNoClassM = 0.6, kOtherClassM = 0.3, kUnlikeM = 1;
   const double apart_m = (look.body - track.body.position()).norm();
   const double gate_m = kGateM + (track.hits < kFewHits ? kYoungM : 0) + kGateGrowth_m_s * track.unseen_s();
   if (apart_m > gate_m) return std::numeric_limits<double>::infinity();
-  double cost = apart_m + kUnlikeM * unlike(look.tints, track.tints);
+  double cost = apart_m + kUnlikeM * histogram_distance(look.tints, track.tints);
   if (sighting.source && sighting.source != track.last.source) cost += kOtherSourceM;
   const std::string &seen = sighting.class_name, &known = track.last.class_name;
   if (seen != known) cost += seen.empty() || known.empty() ? kNoClassM : kOtherClassM;
@@ -213,7 +213,7 @@ void WorldMovers::recognise(View& view) {
     for (std::size_t i = 0; i < tracks_.size(); ++i) {
       const Track& track = tracks_[i];
       if (track.unseen_s() <= 0 || track.hits < kFewHits) continue;
-      const double different = unlike(track.tints, view.looks[j].tints);
+      const double different = histogram_distance(track.tints, view.looks[j].tints);
       const double apart_m = (track.body.position() - view.looks[j].body).norm();
       if (different < kUnlike && apart_m < kNearM + kSpeed_m_s * track.unseen_s())
         costs.at(static_cast<int>(i), static_cast<int>(j)) = different + kCostPerM * apart_m;
@@ -243,7 +243,7 @@ bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
   for (std::size_t i = 0; i < view.share[sighting].size(); ++i) {
     if (tracks_[i].unseen_s() <= 0) known += view.share[sighting][i];
   }
-  const ObjectLook& look = view.looks[sighting];
+  const ObjectAppearance& look = view.looks[sighting];
   const bool near = std::ranges::any_of(tracks_, [&](const Track& track) {
     return track.unseen_s() <= 0 && (track.body.position() - look.body).norm() < kSamePlaceM;
   });
@@ -253,7 +253,7 @@ bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
   return known <= kMax && !near && !part;
 }
 
-void WorldMovers::update(Track& track, const ObjectSighting& sighting, const ObjectLook& look) {
+void WorldMovers::update(Track& track, const ObjectSighting& sighting, const ObjectAppearance& look) {
   constexpr double kNewShare = 0.1, kSlowShare = 0.02, kTintShare = 0.1;
   constexpr double kWholeShare = 0.75;
   const bool cut = look.cut_left || look.cut_right || look.width_m < kWholeShare * track.width_m;
@@ -286,14 +286,14 @@ void WorldMovers::update(Track& track, const ObjectSighting& sighting, const Obj
 }
 
 /// Where it is seen, at any speed.
-void WorldMovers::put(Track& track, const ObjectLook& look) {
+void WorldMovers::put(Track& track, const ObjectAppearance& look) {
   track.body.state.head<3>() = look.body;
   track.body.covariance.setZero();
   track.body.covariance.topLeftCorner<3, 3>() = noise(look.view, kSigmaAcrossM, kSigmaAlongM);
   track.body.covariance.bottomRightCorner<3, 3>() = kFirstSpeed_m_s * kFirstSpeed_m_s * Matrix3d::Identity();
 }
 
-WorldMovers::Track WorldMovers::start(const ObjectSighting& sighting, const ObjectLook& look) {
+WorldMovers::Track WorldMovers::start(const ObjectSighting& sighting, const ObjectAppearance& look) {
   Track track;
   track.id = next_id_++;
   track.last = without_points(sighting);

@@ -10,7 +10,7 @@
 
 #include "common/msg/stamps.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
-#include "services/filter/core/movers/object_look.hpp"
+#include "services/filter/core/movers/object_appearance.hpp"
 #include "services/filter/core/movers/object_sighting.hpp"
 
 /// Moving objects for other programs and for people who watch: boxes in the world with velocities. Nothing here decides
@@ -53,7 +53,7 @@ class WorldMovers {
     Eigen::Vector3d view = Eigen::Vector3d::Zero();  ///< it was last seen along
     double width_m = 0;                              ///< across the view
     double thickness_m = 0;                          ///< along it
-    TintShares tints = TintShares::Zero();
+    ColorHistogram tints = ColorHistogram::Zero();
     std::int64_t first_ns = 0, now_ns = 0, seen_ns = 0;
     int hits = 0;
     double unseen_s() const { return msg::minus_s(now_ns, seen_ns); }
@@ -62,16 +62,16 @@ class WorldMovers {
   struct View;
   void predict(std::int64_t stamp_ns);
   View look_around(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& sightings) const;
-  void share_out(View& view) const;
-  std::optional<ObjectLook> look_for(std::size_t track, std::size_t sighting, const View& view) const;
+  void assign_points(View& view) const;
+  std::optional<ObjectAppearance> look_for(std::size_t track, std::size_t sighting, const View& view) const;
   void follow(View& view);
   void recognise(View& view);
   void start_others(View& view);
   bool is_new(std::size_t sighting, const View& view) const;
-  static double cost_of(const Track& track, const ObjectSighting& sighting, const ObjectLook& look);
-  static void update(Track& track, const ObjectSighting& sighting, const ObjectLook& look);
-  static void put(Track& track, const ObjectLook& look);
-  Track start(const ObjectSighting& sighting, const ObjectLook& look);
+  static double cost_of(const Track& track, const ObjectSighting& sighting, const ObjectAppearance& look);
+  static void update(Track& track, const ObjectSighting& sighting, const ObjectAppearance& look);
+  static void put(Track& track, const ObjectAppearance& look);
+  Track start(const ObjectSighting& sighting, const ObjectAppearance& look);
   static bool forgotten(const Track& track);
   static WorldMover to_mover(const Track& track);
 

@@ -9,7 +9,6 @@
 #include "services/filter/core/orb/brief.hpp"
 #include "services/filter/core/orb/corners.hpp"
 #include "services/filter/core/orb/shrink.hpp"
-#include "services/filter/core/orb/smoothing.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/geometry/camera_model.hpp"
 #include "common/msg/features.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/filter/core/filter_config.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/vision/rgbd_image.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 
 namespace rtd::filter {
 
@@ -74,5 +75,17 @@ class DepthGridSampler {
   std::vector<int> pixels_;  ///< kSamples raw pixels per cell as row * width + column, -1 = outside
   std::vector<Eigen::Vector3f> rays_;
 };
+
+/// Surfaces without a depth step in them: objects without a class.
+struct DepthClusters {
+  GridShape shape;
+  std::vector<std::int32_t> label;  ///< cluster of each cell, -1 = not measured or in a cluster that is too small
+  std::vector<int> cells;           ///< number of cells of each cluster
+  int count() const { return static_cast<int>(cells.size()); }
+};
+
+/// Joins neighbouring cells whose depths differ by less than the step of the config (docs/theory/dynamic_points.md Eq.
+/// (2)). Clusters are numbered in the order of their first cell.
+DepthClusters find_depth_clusters(const DepthGrid& grid, const ClusterConfig& config);
 
 }  // namespace rtd::filter

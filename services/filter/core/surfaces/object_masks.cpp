@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "services/filter/core/surfaces/standing_out.hpp"
+#include "services/filter/core/surfaces/foreground.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -170,7 +170,7 @@ std::vector<int> all_cells(const CellBox& box, const GridShape& shape) {
 struct PixelCells {
   CellBox reach;  ///< the box, grown as for the network that found them: elsewhere they say nothing
   CellMask on;    ///< the object
-  CellMask near;  ///< the object or a cell beside it: colour and depth are not registered any better
+  CellMask near;  ///< the object or a cell next to it: colour and depth are not registered any better
 };
 
 /// Empty where none of the object's cells can be seen.
@@ -222,7 +222,7 @@ const ClusterInBox* choose_cluster(const ObjectBox& from, const std::vector<Clus
   return under != nullptr ? under : object_cluster(inside, config.min_share);
 }
 
-/// The holes beside an object with those in its pixels, ascending.
+/// The holes next to an object with those in its pixels, ascending.
 std::vector<int> with_holes_on(const PixelCells& pixels, const DepthGrid& grid, const std::vector<int>& beside) {
   std::vector<int> on, both;
   for (const int cell : all_cells(pixels.reach, grid.shape)) {
@@ -233,7 +233,7 @@ std::vector<int> with_holes_on(const PixelCells& pixels, const DepthGrid& grid, 
   return both;
 }
 
-/// Leaves what lies beside the object's pixels to its surroundings, but for its holes and the cells for which `stays`
+/// Leaves what lies next to the object's pixels to its surroundings, but for its holes and the cells for which `stays`
 /// says so: networks miss dark clothes and arms.
 void cut_by_pixels(SceneObject& object, const PixelCells& pixels, const GridShape& shape, const auto& stays) {
   const auto is_near = [&](int cell) { return pixels.near[static_cast<std::size_t>(cell)] != 0; };

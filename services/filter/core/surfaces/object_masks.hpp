@@ -9,10 +9,8 @@
 #include "common/geometry/camera_model.hpp"
 #include "common/vision/detection.hpp"
 #include "common/vision/motion_levels.hpp"
-#include "services/filter/core/filter_config.hpp"
-#include "services/filter/core/surfaces/box_mask.hpp"
+#include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"
-#include "services/filter/core/surfaces/depth_clusters.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {

@@ -8,8 +8,8 @@
 
 namespace rtd::launcher {
 
-/// Where candidates come from. What a program says of itself in its help is the only list of its options, so that a new
-/// option is completed without a change here.
+/// Where candidates come from. What a program says about itself in its help is the only list of its options, so that a
+/// new option is completed without a change here.
 struct CompletionSources {
   std::vector<std::string> commands;
   std::vector<std::string> services;  ///< whose keys `rtd run --set` takes

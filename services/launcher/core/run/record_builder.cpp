@@ -79,8 +79,7 @@ RecordBuilder::Frame* RecordBuilder::frame_of(const FramePlace& place) {
   }
   end_of_seen_ = std::max(end_of_seen_, seq + 1);
   advance(last_seen_, place);
-  Frame& frame = frames_[seq];
-  return &frame;
+  return &frames_[seq];
 }
 
 /// Frames without a result are not part of the record.
@@ -234,7 +233,7 @@ std::optional<std::string> RecordBuilder::take_notice() {
 }
 
 bool RecordBuilder::disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated) {
-  // A detector for several robots sends a "detector" heartbeat beside its own to each robot that it serves.
+  // A detector for several robots sends a "detector" heartbeat next to its own to each robot that it serves.
   const bool harmless = name == "record" || name == "detector_box" || name == "link" || name == "viewer";
   if (service.state == msg::ServiceState::kFinished || harmless) return false;
   if (name == "detector") return !tolerated.detector;
@@ -272,15 +271,13 @@ void RecordBuilder::fill(run_record::RunRecord& record) const {
 /// Slam runs on the first host, so its measurements of other hosts stand for all services of the first host.
 std::vector<run_record::HostClock> RecordBuilder::clocks() const {
   const std::string prefix = metric::kClockPrefix, suffix = metric::kClockOffsetSuffix;
-  const auto slam = services_.find("slam");
-  if (slam == services_.end()) return {};
   std::vector<run_record::HostClock> clocks;
-  for (const auto& [name, counter] : slam->second.counters) {
+  const auto& counters = service("slam").counters;
+  for (const auto& [name, counter] : counters) {
     if (!name.starts_with(prefix) || !name.ends_with(suffix)) continue;
-    const std::string service = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-    const auto round_trip = slam->second.counters.find(prefix + service + metric::kClockRoundTripSuffix);
-    if (round_trip != slam->second.counters.end())
-      clocks.push_back({service, counter.current, round_trip->second.current});
+    const std::string other = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+    const auto round_trip = counters.find(prefix + other + metric::kClockRoundTripSuffix);
+    if (round_trip != counters.end()) clocks.push_back({other, counter.current, round_trip->second.current});
   }
   return clocks;
 }
@@ -298,23 +295,25 @@ std::map<std::string, double> RecordBuilder::drops() const {
 std::map<std::string, double> RecordBuilder::left_out() const {
   std::map<std::string, double> result;
   const std::string_view prefix = metric::kLeftOutPrefix;
-  const auto camera = services_.find("camera");
-  if (camera == services_.end()) return result;
-  for (const auto& [name, counter] : camera->second.counters)
+  for (const auto& [name, counter] : service("camera").counters)
     if (name.starts_with(prefix)) result[name.substr(prefix.size())] = counter.total();
   return result;
 }
 
+const RecordBuilder::Service& RecordBuilder::service(const std::string& name) const {
+  static const Service kNotSeen;
+  const auto found = services_.find(name);
+  return found == services_.end() ? kNotSeen : found->second;
+}
+
 std::string RecordBuilder::camera_message() const {
-  const auto camera = services_.find("camera");
-  return camera == services_.end() ? std::string() : camera->second.message;
+  return service("camera").message;
 }
 
 RecordBuilder::Counter RecordBuilder::camera_counter(const std::string& name) const {
-  const auto camera = services_.find("camera");
-  if (camera == services_.end()) return {};
-  const auto counter = camera->second.counters.find(name);
-  return counter == camera->second.counters.end() ? Counter{} : counter->second;
+  const auto& counters = service("camera").counters;
+  const auto counter = counters.find(name);
+  return counter == counters.end() ? Counter{} : counter->second;
 }
 
 SampleKeeper::SampleKeeper(std::uint64_t wanted, std::uint64_t total)
@@ -382,10 +381,6 @@ std::string format_live_status(const LiveStatus& status) {
   return fmt::format("{}  {:.1f} fps  {}  inliers {}  dynamic {}  dropped {}  latency {:.0f} ms", count,
                      status.frames_per_s, to_string(status.state), status.inliers, status.dynamic_points,
                      status.dropped, status.latency_ms);
-}
-
-std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames) {
-  return online_trajectory_text(frames, INT64_MAX);
 }
 
 std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns) {

@@ -35,7 +35,7 @@ struct LiveStatus {
 /// columns.
 std::string format_live_status(const LiveStatus& status);
 
-/// Services of others in the domain that disturb no run, beside recorders, which only subscribe.
+/// Services of others in the domain that disturb no run, besides recorders, which only subscribe.
 struct Tolerated {
   bool detector = false;         ///< it runs on another host
   bool harmless_replay = false;  ///< a replay that plays no topic of a run: its metric run_topics is 0
@@ -83,7 +83,7 @@ class RecordBuilder {
   /// The newest frame of the camera, and the newest one with a result; empty before the first.
   std::optional<FramePlace> last_seen() const { return last_seen_; }
   std::optional<FramePlace> last_answered() const { return last_answered_; }
-  /// What the camera says of itself; at its end the first piece that its source left out.
+  /// What the camera says about itself; at its end the first piece that its source left out.
   std::string camera_message() const;
   LiveStatus live() const;
   /// The newest message of a degraded service; returned once, also when its numbers change.
@@ -115,6 +115,8 @@ class RecordBuilder {
   };
 
   static bool disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated);
+  /// An empty one where none of this name was seen.
+  const Service& service(const std::string& name) const;
   std::map<std::string, double> drops() const;
   std::map<std::string, double> left_out() const;
   std::vector<run_record::HostClock> clocks() const;
@@ -181,9 +183,8 @@ class SampleKeeper {
   std::map<std::int64_t, std::uint64_t> awaited_;  ///< frames whose masks have not come, by stamp
 };
 
-/// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw".
-std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames);
-/// The same of the frames before `end_ns`: what a slam published that was restarted.
-std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns);
+/// The poses as they were published, one line per tracked frame in TUM's format: "stamp_s tx ty tz qx qy qz qw";
+/// those before `end_ns`, e.g. what a slam published that was restarted.
+std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns = INT64_MAX);
 
 }  // namespace rtd::launcher

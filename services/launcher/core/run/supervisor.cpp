@@ -40,7 +40,7 @@ void Supervisor::start(const ServicePlan& plan, Clock now) {
 }
 
 void Supervisor::update(Clock now) {
-  forgive_standstill(now);
+  exclude_standstill(now);
   for (Child& child : children_) {
     if (child.state == State::kRunning) {
       if (const auto exit = host_.poll_exit(child.process)) on_exit(child, *exit, now);
@@ -55,7 +55,7 @@ void Supervisor::update(Clock now) {
 }
 
 /// Stopped, or in a paused container: the services, stopped as well, had no chance to give a sign or to end.
-void Supervisor::forgive_standstill(Clock now) {
+void Supervisor::exclude_standstill(Clock now) {
   const Clock away = updated_ == Clock(0) ? Clock(0) : now - updated_;
   updated_ = now;
   if (away < kStoodStill) return;

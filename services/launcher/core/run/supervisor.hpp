@@ -120,7 +120,7 @@ class Supervisor {
   void on_death(Child& child, const process::ProcessExit& exit, Clock now);
   void watch(Child& child, Clock now);
   bool hangs(Child& child, Clock now);
-  void forgive_standstill(Clock now);
+  void exclude_standstill(Clock now);
   void ask_to_end(Child& child, Clock kill_at);
   bool continues(const Child& child) const { return child.plan.outlives_run && !rest_ends_; }
   bool others_ended() const;

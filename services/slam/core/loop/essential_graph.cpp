@@ -45,7 +45,7 @@ class GraphBuilder {
   }
 
   void add_loop(const LoopEdge& loop) {
-    const Standing older = stand(loop.older), newer = stand(loop.newer);
+    const VertexPose older = pose_of(loop.older), newer = pose_of(loop.newer);
     if (older.keyframe == newer.keyframe || !index_.contains(older.keyframe) || !index_.contains(newer.keyframe)) {
       return;
     }
@@ -58,11 +58,11 @@ class GraphBuilder {
 
  private:
   /// Where a keyframe that exists or existed stands: relative to one that exists.
-  struct Standing {
+  struct VertexPose {
     KeyframeId keyframe;
     Eigen::Isometry3d T_keyframe_camera;
   };
-  Standing stand(KeyframeId id) const {
+  VertexPose pose_of(KeyframeId id) const {
     const auto [ancestor, T_ancestor_camera] = map_.living_ancestor(id);
     return {ancestor, T_ancestor_camera};
   }

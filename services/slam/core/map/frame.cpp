@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/msg/frame_size.hpp"
-#include "common/msg/sensor_time.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::slam {
 namespace {

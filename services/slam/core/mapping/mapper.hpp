@@ -62,7 +62,7 @@ class Mapper {
   std::vector<KeyframeChange> take_changes();
   /// Every announced keyframe as removed: the map is to be forgotten.
   std::vector<KeyframeChange> take_back() const;
-  /// Global bundle adjustment runs beside the mapper from now on; `on_done` reports, from its thread, that
+  /// Global bundle adjustment runs next to the mapper from now on; `on_done` reports, from its thread, that
   /// apply_adjustment() has something to apply.
   void adjust_in_background(std::function<void()> on_done) { adjuster_.run_in_background(std::move(on_done)); }
   void apply_adjustment();

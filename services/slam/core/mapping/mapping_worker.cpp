@@ -122,11 +122,6 @@ void MappingWorker::forget_removed(const std::function<void(const Map&)>& before
   mapper_->forget_removed();
 }
 
-void MappingWorker::read(const std::function<void(const Map&)>& look) const {
-  const std::lock_guard lock(mapper_mutex_);
-  look(mapper_->map());
-}
-
 std::vector<LoopClosure> MappingWorker::loops(std::size_t first) const {
   const std::lock_guard lock(output_mutex_);
   if (first >= loops_.size()) return {};

@@ -18,7 +18,7 @@ namespace rtd::slam {
 
 enum class MappingMode : std::uint8_t {
   kSynchronous,  ///< in the caller's thread: same input, same map
-  kThreaded,     ///< beside tracking
+  kThreaded,     ///< next to tracking
 };
 
 /// What happens to a global bundle adjustment that is under way when mapping ends: it may need seconds.
@@ -62,8 +62,11 @@ class MappingWorker {
   void forget_removed(const std::function<void(const Map&)>& before);
   /// Works off what is queued and ends the thread; later calls of insert() do nothing.
   void finish(PendingAdjustment pending);
-  /// Reads the whole map between two keyframes: may wait for a bundle adjustment.
-  void read(const std::function<void(const Map&)>& look) const;
+  /// What `look` finds in the whole map between two keyframes: may wait for a bundle adjustment.
+  auto read(const auto& look) const {
+    const std::lock_guard lock(mapper_mutex_);
+    return look(mapper_->map());
+  }
 
  private:
   struct Recentre {};         ///< on wanted_centre_

@@ -62,7 +62,7 @@ double Tracker::expected_radius_px(const Frame& frame) const {
 }
 
 /// Whether a view that is not covered turns as the gyroscope says. What contradicts such a pose is the accelerometer: a
-/// filter that began beside something that moves has learnt a wrong velocity.
+/// filter that began next to something that moves has learnt a wrong velocity.
 bool Tracker::turns_as_measured(const Frame& frame, const PoseGuess& guess) const {
   constexpr double kMaxTurn2 = 11.3;  // 99 % of chi2 with 3 degrees of freedom
   if (!rotation_ || covered(frame)) return false;
@@ -99,7 +99,7 @@ void Tracker::report_to_prior(const geometry::Matrix6d& covariance, bool had_pos
       contradiction_ = off * off.transpose();
     }
   }
-  prior_->believe(measured);
+  prior_->update(measured);
 }
 
 /// Whether an IMU contradicted a pose that was believed, within the span that docs/integrity.md judges: either of both

@@ -63,7 +63,7 @@ bool Relocalizer::confirm() {
   return true;
 }
 
-void Relocalizer::believe() {
+void Relocalizer::accept() {
   if (state_ == State::kConfirming) confirmations_ = config_.place.confirmations - 1;
 }
 

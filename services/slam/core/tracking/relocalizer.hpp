@@ -55,7 +55,7 @@ class Relocalizer {
   /// The frame was tracked, at the recognised place if there is one. True when its pose counts.
   bool confirm();
   /// The place was expected: the frame that was found there counts at once.
-  void believe();
+  void accept();
   /// The frame was neither tracked nor found.
   void give_up();
   /// The frame before the present one was at the recognised place already.

@@ -263,7 +263,7 @@ bool Tracker::settles() {
 /// No pose yet: the next frames have to agree. But a place where the camera was a moment ago is no other place.
 void Tracker::enter_place(TrackOutcome& outcome, FramePtr frame, Relocalizer::Found found) {
   const bool same_place = found.place->find_keyframe(last_.reference) != nullptr;
-  if (same_place && continues_motion(*frame, found.tracking.guess.T_world_camera)) relocalizer_.believe();
+  if (same_place && continues_motion(*frame, found.tracking.guess.T_world_camera)) relocalizer_.accept();
   state_ = msg::TrackingState::kRecentlyLost;
   outcome.map = std::move(found.place);
   outcome.inliers = found.tracking.guess.inliers;

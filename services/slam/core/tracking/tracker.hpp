@@ -54,7 +54,7 @@ struct TrackOutcome {
   bool settling = false;              ///< nothing in the new map has been seen at rest for long enough
   bool contradicted = false;          ///< an IMU expected another pose less than a second ago
   std::vector<Association> rejected;  ///< landmarks that were recognised and contradict the measured pose
-  /// Odometry continues beside the map, which is old and does not change. At the first frame after it: where odometry
+  /// Odometry continues next to the map, which is old and does not change. At the first frame after it: where odometry
   /// expects that frame.
   bool apart = false;
   std::optional<Eigen::Isometry3d> T_world_expected;

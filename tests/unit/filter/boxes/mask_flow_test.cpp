@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/boxes/mask_flow.hpp"
+#include "services/filter/core/boxes/object_tracker.hpp"
 
 #include <gtest/gtest.h>
 

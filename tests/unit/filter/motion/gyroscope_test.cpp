@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/motion/gyroscope.hpp"
+#include "services/filter/core/motion/ego_motion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/motion/surface_motion.hpp"
-
 #include <gtest/gtest.h>
 
 #include <optional>
@@ -9,6 +7,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/vision/samples.hpp"
+#include "services/filter/core/motion/undecided_surfaces.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {

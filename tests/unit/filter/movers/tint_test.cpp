@@ -9,8 +9,8 @@
 namespace rtd::filter {
 namespace {
 
-TintShares shares_of(const std::vector<cv::Vec3b>& colors_bgr) {
-  TintShares shares = TintShares::Zero();
+ColorHistogram shares_of(const std::vector<cv::Vec3b>& colors_bgr) {
+  ColorHistogram shares = ColorHistogram::Zero();
   for (const cv::Vec3b& color : colors_bgr) shares[tint_of(color)] += 1.0 / static_cast<double>(colors_bgr.size());
   return shares;
 }
@@ -34,13 +34,13 @@ TEST(Tint, is_the_same_in_shade_where_there_is_hue) {
 }
 
 TEST(Tint, distinguishes_surfaces_and_reports_nothing_about_unknown_ones) {
-  const TintShares red_and_dark = shares_of({{40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
-  const TintShares mostly_red = shares_of({{40, 40, 200}, {40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
-  const TintShares blue = shares_of({{200, 40, 40}});
-  EXPECT_NEAR(unlike(red_and_dark, red_and_dark), 0, 1e-12);
-  EXPECT_LT(unlike(red_and_dark, mostly_red), 0.05);
-  EXPECT_NEAR(unlike(red_and_dark, blue), 1, 1e-12);
-  EXPECT_EQ(unlike(red_and_dark, TintShares::Zero()), 0);
+  const ColorHistogram red_and_dark = shares_of({{40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
+  const ColorHistogram mostly_red = shares_of({{40, 40, 200}, {40, 40, 200}, {40, 40, 200}, {20, 20, 20}});
+  const ColorHistogram blue = shares_of({{200, 40, 40}});
+  EXPECT_NEAR(histogram_distance(red_and_dark, red_and_dark), 0, 1e-12);
+  EXPECT_LT(histogram_distance(red_and_dark, mostly_red), 0.05);
+  EXPECT_NEAR(histogram_distance(red_and_dark, blue), 1, 1e-12);
+  EXPECT_EQ(histogram_distance(red_and_dark, ColorHistogram::Zero()), 0);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class Drive {
     }
     return prior_->advance(ns(t_s) + kFirst_ns);
   }
-  void measure() { prior_->believe(measured()); }
+  void measure() { prior_->update(measured()); }
   PredictedPose measured() {
     std::normal_distribution<double> normal;
     const auto noise = [&] { return Eigen::Vector3d(normal(random_), normal(random_), normal(random_)); };

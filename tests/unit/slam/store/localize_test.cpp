@@ -26,9 +26,7 @@ FeatureWorld::Options noisy(std::uint64_t seed = 1) {
 }
 
 io::Bytes map_of(const SlamSystem& slam) {
-  io::Bytes bytes;
-  slam.read_map([&](const Map& map) { bytes = bytes_of_map(map); });
-  return bytes;
+  return slam.read_map([](const Map& map) { return bytes_of_map(map); });
 }
 
 /// The map of a first session, as a file.
@@ -132,8 +130,7 @@ TEST_F(LoadedMap, frame_that_cannot_be_used_does_not_end_the_search) {
 TEST_F(LoadedMap, grows_when_mapping_continues) {
   SlamSystem slam = restart(false);
   slam.restore(read_bytes(file_));
-  KeyframeId first_free = 0;
-  slam.read_map([&](const Map& map) { first_free = map.next_keyframe(); });
+  const KeyframeId first_free = slam.read_map([](const Map& map) { return map.next_keyframe(); });
   std::uint64_t seq = kMapped;
   find_back(slam, seq);
   for (; seq < kMapped + 60; ++seq) {

@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/tracking/settling.hpp"
-
 #include <gtest/gtest.h>
 
+#include "services/slam/core/corrections.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "tests/support/feature_world.hpp"
 
@@ -43,7 +42,7 @@ class UnsettledFramesTest : public ::testing::Test {
   Map map_;
   LocalMapPtr local_;
   std::vector<FrameRecord> records_;
-  UnsettledFrames frames_;
+  DeferredFrames frames_;
 };
 
 TEST_F(UnsettledFramesTest, are_judged_again_when_nothing_is_in_question_for_a_while) {
