@@ -18,6 +18,7 @@ struct Techniques {
   bool prediction = true;
   bool place_recognition = true;
   bool loop_closing = true;
+  bool beyond_range = true;
 
   void bind(auto& binder) {
     binder.field("adaptive_kernel", adaptive_kernel,
@@ -29,6 +30,8 @@ struct Techniques {
     binder.field("place_recognition", place_recognition,
                  "a lost camera is found at places that it knows; off: only around its last pose");
     binder.field("loop_closing", loop_closing, "known places correct the map; off: drift stays");
+    binder.field("beyond_range", beyond_range,
+                 "where little has depth, what is too far for the sensor is tracked at once; off: once triangulated");
   }
 };
 

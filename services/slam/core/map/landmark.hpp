@@ -48,6 +48,23 @@ struct Landmark {
   std::vector<Observation> observations;  ///< ordered by keyframe, one per keyframe
 };
 
+/// What is not known of where a landmark is that no keyframe measured the depth of.
+struct UnmeasuredDepth {
+  double sigma_per_m = 0;                               ///< of the inverse depth; 0: it was measured
+  Eigen::Vector3d seen_from = Eigen::Vector3d::Zero();  ///< camera that saw it first, world frame, m
+
+  /// By how much it may be seen elsewhere in the image than where it is expected, from `camera`. docs/theory/mapping.md
+  /// Eq. (7).
+  double sigma_px(const Eigen::Vector3d& camera, double fx_px) const {
+    return sigma_per_m > 0 ? fx_px * sigma_per_m * (camera - seen_from).norm() : 0;
+  }
+};
+
+/// Whether a keyframe measured how far away it is; otherwise triangulation or an assumption placed it.
+inline bool has_measured_depth(const Landmark& landmark) {
+  return landmark.observation_weight > static_cast<int>(landmark.observations.size());
+}
+
 /// What a landmark says about a pose that sees it as `feature`: the smaller of their probabilities. Where the feature
 /// is in question, hardly anything, until other keyframes have seen the landmark when it was not.
 inline double static_weight(const msg::Feature& feature, double landmark_probability, bool landmark_in_question) {

@@ -28,7 +28,7 @@ LocalKeyframe copy_keyframe(const Keyframe& keyframe) {
   return {keyframe.id, keyframe.frame, keyframe.T_world_camera, keyframe.landmarks, keyframe.covariance};
 }
 
-LocalLandmark copy_landmark(const Landmark& landmark) {
+LocalLandmark copy_landmark(const Map& map, const Landmark& landmark) {
   return {landmark.id,
           landmark.position,
           landmark.normal,
@@ -37,6 +37,7 @@ LocalLandmark copy_landmark(const Landmark& landmark) {
           landmark.static_probability,
           landmark.in_question,
           landmark.witness,
+          unmeasured_depth(map, landmark),
           landmark.observation_weight,
           landmark.descriptor,
           0,
@@ -84,7 +85,7 @@ LocalMapPtr make_local_map(const Map& map, KeyframeId centre, std::uint64_t vers
   local->observers.reserve(seen.size());
   for (const auto& [id, keyframe_index] : seen) {
     if (local->landmarks.empty() || local->landmarks.back().id != id) {
-      local->landmarks.push_back(copy_landmark(*map.find_landmark(id)));
+      local->landmarks.push_back(copy_landmark(map, *map.find_landmark(id)));
       local->landmarks.back().first_observer = static_cast<std::uint32_t>(local->observers.size());
     }
     local->observers.push_back(keyframe_index);

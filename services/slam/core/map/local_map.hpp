@@ -18,6 +18,7 @@ struct LocalLandmark {
   double static_probability = 1.0;
   bool in_question = false;
   bool witness = false;
+  UnmeasuredDepth unmeasured;
   int observation_weight = 0;
   msg::Descriptor descriptor{};
   std::uint32_t first_observer = 0, observers = 0;  ///< range in LocalMap::observers

@@ -309,4 +309,18 @@ std::vector<KeyframeId> Map::best_covisible(KeyframeId id, std::size_t count, in
   return best;
 }
 
+UnmeasuredDepth unmeasured_depth(const Map& map, const Landmark& landmark) {
+  constexpr double kAssumed_per_m = 0.05, kSmallest_m = 1e-3;
+  if (has_measured_depth(landmark)) return {};
+  const Keyframe& first = *map.find_keyframe(landmark.observations.front().keyframe);
+  UnmeasuredDepth unmeasured{kAssumed_per_m, first.T_world_camera.translation()};
+  double baseline_m = kSmallest_m;
+  for (const Observation& observation : landmark.observations) {
+    const Eigen::Vector3d camera = map.find_keyframe(observation.keyframe)->T_world_camera.translation();
+    baseline_m = std::max(baseline_m, (camera - unmeasured.seen_from).norm());
+  }
+  unmeasured.sigma_per_m = std::min(kAssumed_per_m, 1 / (first.frame->camera.fx * baseline_m));
+  return unmeasured;
+}
+
 }  // namespace rtd::slam

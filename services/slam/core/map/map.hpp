@@ -154,4 +154,7 @@ class Map {
 /// between the less is left the nearer they are to it. docs/theory/tracking.md, Eq. (14).
 void spread_certainty(Map& map, KeyframeId older, KeyframeId newer);
 
+/// By the keyframes that see it.
+UnmeasuredDepth unmeasured_depth(const Map& map, const Landmark& landmark);
+
 }  // namespace rtd::slam

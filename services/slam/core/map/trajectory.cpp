@@ -13,6 +13,7 @@ namespace rtd::slam {
 namespace {
 
 constexpr std::size_t kLineLength = 256;
+constexpr double kUnknownDepth_per_m = 0.02;  ///< of the inverse: a metre at 7 m
 
 }  // namespace
 
@@ -77,6 +78,7 @@ void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> lan
   for (const LandmarkId landmark_id : landmarks) {
     const Landmark* landmark = map.find_landmark(landmark_id);
     if (landmark == nullptr || map.map_of(landmark->reference) != id) continue;
+    if (unmeasured_depth(map, *landmark).sigma_per_m > kUnknownDepth_per_m) continue;
     points.push_back({landmark->position.cast<float>(), static_cast<float>(landmark->static_probability)});
   }
 }

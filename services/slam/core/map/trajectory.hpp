@@ -52,9 +52,9 @@ struct MapPoint {
 std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id = 0);
 /// Poses of the keyframes still in the map, oldest first.
 std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id = 0);
-/// All landmarks of one map, by id.
+/// All landmarks of one map whose place is known, by id: none that is at an assumed distance still.
 std::vector<MapPoint> map_points(const Map& map, MapId id = 0);
-/// Those of `landmarks` that are in this map.
+/// Those of `landmarks` that are in this map, likewise.
 void append_map_points(const Map& map, MapId id, std::span<const LandmarkId> landmarks, std::vector<MapPoint>& points);
 
 /// ASCII PLY: x y z and static_probability per vertex.

@@ -4,23 +4,31 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/geometry/se3.hpp"
 #include "common/vision/features.hpp"
 #include "services/slam/core/map/frame.hpp"
+#include "services/slam/core/map/tiles.hpp"
 
 namespace rtd::slam {
 namespace {
 
 constexpr double kMaxRatio = 0.8;
 constexpr double kMaxChi2Line = 3.84;  // 95 %, 1 degree of freedom
+/// Fewer tiles without depth are holes of the depth image. What lies beyond the range is taken to be this much farther.
+constexpr std::size_t kFewestTilesBeyond = 6;
+constexpr double kBeyondRange = 4.0 / 3;
+constexpr std::ptrdiff_t kEnoughKnown = 300;  ///< landmarks that tell well how the camera turns
+/// Shares of the features that have depth: of a sensor that is not blind; of a view that is known well enough by it.
+constexpr double kApartFromHoles = 0.25, kMostOfTheView = 0.5;
 
-/// Whether the sensor measured depth in this frame, apart from holes: at least at a quarter of the features.
-bool measures_depth(const Frame& frame) {
+/// Whether the sensor measured the depth of at least this share of the features.
+bool measures_depth(const Frame& frame, double share) {
   const auto with_depth = std::count_if(frame.features.begin(), frame.features.end(),
                                         [](const msg::Feature& feature) { return feature.depth_m > 0; });
-  return 4 * static_cast<std::size_t>(with_depth) >= frame.features.size();
+  return static_cast<double>(with_depth) >= share * static_cast<double>(frame.features.size());
 }
 
 /// A keyframe with what the search needs at hand.
@@ -37,12 +45,13 @@ struct View {
         T_world_camera(keyframe.T_world_camera),
         T_camera_world(keyframe.T_world_camera.inverse()),
         landmarks(keyframe.landmarks),
-        has_depth(measures_depth(*keyframe.frame)) {}
+        has_depth(measures_depth(*keyframe.frame, kApartFromHoles)) {}
 
-  Eigen::Vector2d normalized(std::uint32_t feature) const {
+  static Eigen::Vector2d ray(const Frame& frame, std::uint32_t feature) {
     const msg::Feature& f = frame.features[feature];
     return {(f.u_px - frame.camera.cx) / frame.camera.fx, (f.v_px - frame.camera.cy) / frame.camera.fy};
   }
+  Eigen::Vector2d normalized(std::uint32_t feature) const { return ray(frame, feature); }
   std::vector<std::uint32_t> free_features() const {
     std::vector<std::uint32_t> free;
     for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
@@ -171,6 +180,31 @@ void create_with_neighbour(Map& map, KeyframeId keyframe, KeyframeId neighbour, 
   }
 }
 
+/// Where features have no depth, but for one in six.
+Tiles tiles_beyond_range(const Frame& frame) {
+  constexpr int kWithout = 5;
+  std::array<int, kTiles> with{}, without{};
+  for (const msg::Feature& f : frame.features) ++(f.depth_m > 0 ? with : without)[tile_of(frame, f.u_px, f.v_px)];
+  Tiles tiles;
+  for (std::size_t tile = 0; tile < kTiles; ++tile) {
+    tiles.set(tile, without[tile] > 0 && without[tile] >= kWithout * with[tile]);
+  }
+  return tiles;
+}
+
+/// As far as the sensor sees: farther than most of the features.
+double depth_range_m(const Frame& frame) {
+  constexpr double kLeast_m = 4;
+  std::vector<float> depths;
+  for (const msg::Feature& feature : frame.features) {
+    if (feature.depth_m > 0) depths.push_back(feature.depth_m);
+  }
+  if (depths.empty()) return kLeast_m;
+  const auto far = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() * 95 / 100);
+  std::nth_element(depths.begin(), far, depths.end());
+  return std::max<double>(kLeast_m, *far);
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> select_close_features(const Frame& frame, const std::vector<LandmarkId>& landmarks,
@@ -198,6 +232,26 @@ std::vector<LandmarkId> create_from_depth(Map& map, KeyframeId id, double close_
   for (const std::uint32_t feature : select_close_features(*keyframe.frame, keyframe.landmarks, close_depth_m)) {
     const Eigen::Vector3d p_world = keyframe.T_world_camera * keyframe.frame->unproject(feature);
     created.push_back(map.add_landmark(p_world, {id, feature}));
+    map.refresh_landmark(created.back());
+  }
+  return created;
+}
+
+std::vector<LandmarkId> create_beyond_range(Map& map, KeyframeId id) {
+  const Keyframe& keyframe = *map.find_keyframe(id);
+  const Frame& frame = *keyframe.frame;
+  const Tiles beyond = tiles_beyond_range(frame);
+  std::vector<LandmarkId> created;
+  const auto known = std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoLandmark; });
+  if (known >= kEnoughKnown || beyond.count() < kFewestTilesBeyond || measures_depth(frame, kMostOfTheView)) {
+    return created;
+  }
+  const double assumed_m = kBeyondRange * depth_range_m(frame);
+  for (std::uint32_t i = 0; i < frame.features.size(); ++i) {
+    const msg::Feature& f = frame.features[i];
+    if (f.depth_m > 0 || keyframe.landmarks[i] != kNoLandmark || !beyond.test(tile_of(frame, f.u_px, f.v_px))) continue;
+    const Eigen::Vector3d p_camera = assumed_m * View::ray(frame, i).homogeneous();
+    created.push_back(map.add_landmark(keyframe.T_world_camera * p_camera, {id, i}));
     map.refresh_landmark(created.back());
   }
   return created;

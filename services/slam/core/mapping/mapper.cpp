@@ -111,6 +111,7 @@ void Mapper::create_landmarks(KeyframeId keyframe) {
   const bool first = map_.find_keyframe(keyframe)->is_origin();
   recent_.add(create_from_depth(map_, keyframe, first ? config_.sensor.max_depth_m : config_.sensor.close_depth_m));
   recent_.add(create_by_triangulation(map_, keyframe, config_.mapper.neighbours, config_.sensor.close_depth_m));
+  if (config_.techniques.beyond_range) recent_.add(create_beyond_range(map_, keyframe));
 }
 
 void Mapper::cull_keyframes(KeyframeId newest) {

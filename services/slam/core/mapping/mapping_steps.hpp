@@ -20,6 +20,10 @@ std::vector<std::uint32_t> select_close_features(const Frame& frame, const std::
 /// Makes landmarks of the keyframe's close features that have none. Returns the new ones.
 std::vector<LandmarkId> create_from_depth(Map& map, KeyframeId keyframe, double close_depth_m);
 
+/// Where the keyframe has few landmarks and hardly any depth, makes landmarks of features that are too far for the
+/// depth sensor, at an assumed distance. docs/theory/mapping.md, "Beyond the sensor's range". Returns the new ones.
+std::vector<LandmarkId> create_beyond_range(Map& map, KeyframeId keyframe);
+
 /// Makes landmarks that two views agree on, from features of the keyframe and of its best covisible ones that have no
 /// landmark yet: epipolar search, triangulation (or depth, where it is the better of the two), checks of
 /// depth, reprojection and scale. docs/theory/mapping.md Eq. (4)-(6). Nothing is made nearer than `close_depth_m`

@@ -18,18 +18,21 @@ constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
 
 /// A landmark as the world point of a feature.
 Association associate(std::uint32_t feature, const LocalLandmark& landmark) {
-  return {feature, landmark.id, landmark.position, landmark.static_probability, landmark.witness, landmark.in_question};
+  return {feature,          landmark.id,          landmark.position,  landmark.static_probability,
+          landmark.witness, landmark.in_question, landmark.unmeasured};
 }
 
-vision::PoseObservation make_observation(const Frame& frame, const Association& association) {
+vision::PoseObservation make_observation(const Frame& frame, const Association& association,
+                                         const Eigen::Vector3d& camera) {
   const msg::Feature& feature = frame.features[association.feature];
-  return {association.p_world, frame.measurement(association.feature), sigma_px(feature.octave),
+  const double by_depth_px = association.unmeasured.sigma_px(camera, frame.camera.fx);
+  return {association.p_world, frame.measurement(association.feature),
+          std::hypot(sigma_px(feature.octave), by_depth_px),
           static_weight(feature, association.static_probability, association.in_question)};
 }
 
 constexpr int kFewestWitnesses = 8;  ///< two points on one edge must not outweigh an image
-/// A pose with which fewer of the witnesses agree is compared with one of which hardly anything else decides.
-constexpr double kMostOfThem = 0.6, kHardlyAny = 0.01, kClearlyMore = 1.25;
+constexpr double kHardlyAny = 0.01;  ///< what all others may say where witnesses decide
 
 /// What a pose is found from, beside observations with their weights.
 struct RgbdPoseProblem {
@@ -73,18 +76,29 @@ double weigh_probation(const std::vector<Association>& associations, const Witne
   return factor;
 }
 
-/// Where most of the witnesses contradict a pose, that by which clearly more of them agree, hardly anything else being
-/// asked, if there is one.
+/// Squared Mahalanobis distance of a pose from another one whose covariance is known.
+double distance2(const vision::PoseOptimizerResult& pose, const vision::PoseOptimizerResult& other) {
+  geometry::Vector6d apart;
+  apart << pose.T_world_camera.translation() - other.T_world_camera.translation(),
+      geometry::so3_log(pose.T_world_camera.linear() * other.T_world_camera.linear().transpose());
+  return apart.dot(other.covariance.ldlt().solve(apart));
+}
+
+/// The pose by witnesses alone, hardly anything else being asked, where they contradict the one that was found: clearly
+/// more of them agree, or the two are farther apart than theirs is uncertain. docs/theory/tracking.md Eq. (22).
 std::optional<vision::PoseOptimizerResult> prefer_witnesses(const vision::PoseOptimizerResult& found,
                                                             const RgbdPoseProblem& problem,
                                                             std::vector<vision::PoseObservation> observations) {
+  constexpr double kMostOfThem = 0.6, kClearlyMore = 1.25, kMaxChi2 = 12.59;  // 95 %, 6 degrees of freedom
+  constexpr int kEnoughToCompare = 15;
   const auto [agreeing, witnesses] = count_witnesses(problem.associations, found.inlier);
-  if (witnesses < kFewestWitnesses || agreeing >= kMostOfThem * witnesses) return std::nullopt;
+  if (witnesses < kFewestWitnesses) return std::nullopt;
   weaken_others(problem.associations, kHardlyAny, observations);
   auto by_them = vision::optimize_pose(problem.camera, observations, problem.T_world_camera_initial, problem.options);
-  const bool better =
-      by_them.success && count_witnesses(problem.associations, by_them.inlier).first > kClearlyMore * agreeing;
-  if (!better) return std::nullopt;
+  if (!by_them.success) return std::nullopt;
+  const bool clearly_more = agreeing < kMostOfThem * witnesses &&
+                            count_witnesses(problem.associations, by_them.inlier).first > kClearlyMore * agreeing;
+  if (!clearly_more && (agreeing < kEnoughToCompare || distance2(found, by_them) <= kMaxChi2)) return std::nullopt;
   return by_them;
 }
 
@@ -93,7 +107,8 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   const std::int64_t start_ns = context.now_ns();
   std::vector<vision::PoseObservation> observations;
   observations.reserve(associations.size());
-  for (const Association& association : associations) observations.push_back(make_observation(frame, association));
+  for (const Association& association : associations)
+    observations.push_back(make_observation(frame, association, T_world_camera_initial.translation()));
   double probation_weight = weigh_probation(associations, context.config.witness, observations);
   vision::PoseOptimizerOptions options;
   if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
@@ -245,7 +260,7 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   for (const Match& match : matches) {
     const LocalLandmark& landmark = *map.find_landmark(keyframe.landmarks[match.tag]);
     associations.push_back(associate(match.feature, landmark));
-    observations.push_back(make_observation(frame, associations.back()));
+    observations.push_back(make_observation(frame, associations.back(), keyframe.T_world_camera.translation()));
   }
   PoseRansacOptions options;
   options.seed = frame.seq;

@@ -49,6 +49,7 @@ struct Association {
   double static_probability = 1.0;
   bool witness = false;     ///< Landmark::witness
   bool in_question = true;  ///< Landmark::in_question; a temporary point is no more known than its feature
+  UnmeasuredDepth unmeasured = {};
 };
 
 /// What the steps need beside frame and map.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "services/slam/core/map/local_map.hpp"
 #include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/tracking/pose_ransac.hpp"
 #include "tests/support/feature_world.hpp"
@@ -70,6 +71,41 @@ TEST(LandmarkCreation, puts_points_where_they_are) {
   const Eigen::Vector3d p_camera = T_world_camera.inverse() * landmark.position;
   const auto measured = map.find_keyframe(0)->frame->measurement(landmark.observations.front().feature);
   EXPECT_LT(vision::rgbd_residual(map.find_keyframe(0)->frame->camera, p_camera, measured).norm(), 1e-6);
+}
+
+TEST(LandmarkCreation, takes_what_is_beyond_the_range_of_the_sensor_to_be_there) {
+  const FeatureWorld world = make_world();
+  auto message = world.view(0, shifted(0));
+  for (msg::Feature& feature : message->features) {
+    if (feature.v_px < 320) feature.depth_m = 0;
+  }
+  Map map;
+  map.add_keyframe(make_frame(*message, {}).frame, shifted(0), kNoKeyframe);
+  const Frame& frame = *map.find_keyframe(0)->frame;
+  const auto created = create_beyond_range(map, 0);
+  EXPECT_GT(created.size(), 50U);
+  for (const LandmarkId id : created) {
+    const Landmark& landmark = *map.find_landmark(id);
+    EXPECT_LT(frame.features[landmark.observations.front().feature].v_px, 320);
+    EXPECT_GT(landmark.position.z(), 5) << "farther than all that was measured";
+    EXPECT_FALSE(has_measured_depth(landmark));
+  }
+  const auto local = make_local_map(map, 0, 1, 10);
+  const LocalLandmark& landmark = *local->find_landmark(created.front());
+  EXPECT_DOUBLE_EQ(landmark.unmeasured.sigma_px(Eigen::Vector3d::Zero(), 500), 0) << "where it was seen";
+  EXPECT_NEAR(landmark.unmeasured.sigma_px({0.1, 0, 0}, 500), 2.5, 1e-9);
+  EXPECT_EQ(map.check_invariants(), "");
+}
+
+TEST(LandmarkCreation, does_not_take_holes_of_the_depth_image_for_far_away) {
+  const FeatureWorld world = make_world();
+  auto message = world.view(0, shifted(0));
+  for (msg::Feature& feature : message->features) {
+    if (feature.u_px < 200 && feature.v_px < 160) feature.depth_m = 0;
+  }
+  Map map;
+  map.add_keyframe(make_frame(*message, {}).frame, shifted(0), kNoKeyframe);
+  EXPECT_TRUE(create_beyond_range(map, 0).empty());
 }
 
 /// Two keyframes 0.3 m apart that share 40 landmarks where these are; the other features have none.
