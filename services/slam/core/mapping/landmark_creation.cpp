@@ -20,7 +20,7 @@ constexpr double kMaxChi2Line = 3.84;  // 95 %, 1 degree of freedom
 /// Fewer tiles without depth are holes of the depth image. What lies beyond the range is taken to be this much farther.
 constexpr std::size_t kFewestTilesBeyond = 6;
 constexpr double kBeyondRange = 4.0 / 3;
-constexpr std::ptrdiff_t kEnoughKnown = 300;  ///< landmarks that tell well how the camera turns
+constexpr std::ptrdiff_t kEnoughKnown = 400;  ///< landmarks: with so many, the rotation is well held
 /// Shares of the features that have depth: of a sensor that is not blind; of a view that is known well enough by it.
 constexpr double kApartFromHoles = 0.25, kMostOfTheView = 0.5;
 
