@@ -32,7 +32,8 @@ vision::PoseObservation make_observation(const Frame& frame, const Association& 
 }
 
 constexpr int kFewestWitnesses = 8;  ///< two points on one edge must not outweigh an image
-constexpr double kHardlyAny = 0.01;  ///< what all others may say where witnesses decide
+/// A pose with which fewer of the witnesses agree is compared with one of which hardly anything else decides.
+constexpr double kMostOfThem = 0.6, kHardlyAny = 0.01, kClearlyMore = 1.25;
 
 /// What a pose is found from, beside observations with their weights.
 struct RgbdPoseProblem {
@@ -76,29 +77,18 @@ double weigh_probation(const std::vector<Association>& associations, const Witne
   return factor;
 }
 
-/// Squared Mahalanobis distance of a pose from another one whose covariance is known.
-double distance2(const vision::PoseOptimizerResult& pose, const vision::PoseOptimizerResult& other) {
-  geometry::Vector6d apart;
-  apart << pose.T_world_camera.translation() - other.T_world_camera.translation(),
-      geometry::so3_log(pose.T_world_camera.linear() * other.T_world_camera.linear().transpose());
-  return apart.dot(other.covariance.ldlt().solve(apart));
-}
-
-/// The pose by witnesses alone, hardly anything else being asked, where they contradict the one that was found: clearly
-/// more of them agree, or the two are farther apart than theirs is uncertain. docs/theory/tracking.md Eq. (22).
+/// Where most of the witnesses contradict a pose, that by which clearly more of them agree, hardly anything else being
+/// asked, if there is one.
 std::optional<vision::PoseOptimizerResult> prefer_witnesses(const vision::PoseOptimizerResult& found,
                                                             const RgbdPoseProblem& problem,
                                                             std::vector<vision::PoseObservation> observations) {
-  constexpr double kMostOfThem = 0.6, kClearlyMore = 1.25, kMaxChi2 = 12.59;  // 95 %, 6 degrees of freedom
-  constexpr int kEnoughToCompare = 15;
   const auto [agreeing, witnesses] = count_witnesses(problem.associations, found.inlier);
-  if (witnesses < kFewestWitnesses) return std::nullopt;
+  if (witnesses < kFewestWitnesses || agreeing >= kMostOfThem * witnesses) return std::nullopt;
   weaken_others(problem.associations, kHardlyAny, observations);
   auto by_them = vision::optimize_pose(problem.camera, observations, problem.T_world_camera_initial, problem.options);
-  if (!by_them.success) return std::nullopt;
-  const bool clearly_more = agreeing < kMostOfThem * witnesses &&
-                            count_witnesses(problem.associations, by_them.inlier).first > kClearlyMore * agreeing;
-  if (!clearly_more && (agreeing < kEnoughToCompare || distance2(found, by_them) <= kMaxChi2)) return std::nullopt;
+  const bool better =
+      by_them.success && count_witnesses(problem.associations, by_them.inlier).first > kClearlyMore * agreeing;
+  if (!better) return std::nullopt;
   return by_them;
 }
 

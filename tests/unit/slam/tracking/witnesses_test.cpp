@@ -4,9 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "services/slam/core/mapping/mapping_steps.hpp"
 #include "services/slam/core/slam_system.hpp"
-#include "services/slam/core/tracking/tracking_steps.hpp"
 #include "tests/support/feature_world.hpp"
 
 namespace rtd::slam {
@@ -66,43 +64,6 @@ TEST(Witnesses, hold_the_pose_against_a_walker_with_more_features) {
   without.witness.used = false;
   EXPECT_GT(worst_ok_error(without, 60), 0.1) << "what a pose does that follows the most features";
   EXPECT_LT(worst_ok_error({}, 60), 0.06);
-}
-
-/// A hall whose walls are beyond the sensor's range, and a box of fewer features near by that has been carried aside.
-std::unique_ptr<msg::FeatureFrame> view_of_hall(std::uint64_t seq, double carried_m) {
-  static const FeatureWorld walls({.points = 1500, .min_depth_m = 5.5, .max_depth_m = 7.5, .noise_px = 0.5, .seed = 3});
-  static const FeatureWorld box({.points = 400, .min_depth_m = 1.8, .max_depth_m = 2.0, .noise_px = 0.5, .seed = 5});
-  auto frame = walls.view(seq, Eigen::Isometry3d::Identity());
-  frame->count = std::min(frame->count, 200U);
-  const auto seen = box.view(seq, Eigen::Isometry3d(Eigen::Translation3d(-carried_m, 0, 0)));
-  for (std::uint32_t i = 0; i < std::min(seen->count, 80U); ++i) frame->features[frame->count++] = seen->features[i];
-  return frame;
-}
-
-TEST(Witnesses, far_away_hold_the_pose_against_a_box_near_by) {
-  constexpr double kSensorRange_m = 4;
-  Map map;
-  map.add_keyframe(make_frame(*view_of_hall(0, 0), {}).frame, Eigen::Isometry3d::Identity(), kNoKeyframe);
-  for (const LandmarkId id : create_from_depth(map, 0, 100))
-    map.find_landmark(id)->witness = map.find_landmark(id)->position.z() > kSensorRange_m;
-  auto message = view_of_hall(1, 0.04);
-  for (msg::Feature& feature : message->features) {
-    if (feature.depth_m > kSensorRange_m) feature.depth_m = 0;
-  }
-  const FramePtr frame = make_frame(*message, {}).frame;
-  const auto local = make_local_map(map, 0, 1, 10);
-  for (const bool used : {false, true}) {
-    SlamConfig config;
-    config.witness.used = used;
-    const PoseGuess guess = track_keyframe(*frame, local->keyframes.front(), *local, {config, frozen_clock});
-    ASSERT_TRUE(guess.success);
-    const double error_m = guess.T_world_camera.translation().norm();
-    if (used) {
-      EXPECT_LT(error_m, 0.015);
-    } else {
-      EXPECT_GT(error_m, 0.03) << "most of what is known of the position is on the box";
-    }
-  }
 }
 
 TEST(Witnesses, a_map_that_has_just_begun_is_doubtful_until_it_was_seen_to_rest) {
