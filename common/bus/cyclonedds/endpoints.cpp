@@ -258,3 +258,31 @@ bool TypedWriter::write_loaned(void* slot) {
 }
 
 }  // namespace rtd::bus::cyclonedds
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+namespace {
+
+/// By the names that Cyclone gives its threads.
+bool receives_for_cyclone() {
+  static thread_local const bool receives = [] {
+    char name[16] = {};
+    pthread_getname_np(pthread_self(), name, sizeof(name));
+    return std::string_view(name).starts_with("recv");
+  }();
+  return receives;
+}
+
+}  // namespace
+
+/// Stands before the function of the C library.
+extern "C" ssize_t recvmsg(int socket, msghdr* message, int flags) {
+  static const auto original = reinterpret_cast<ssize_t (*)(int, msghdr*, int)>(dlsym(RTLD_NEXT, "recvmsg"));
+  const ssize_t received = original(socket, message, flags);
+  if (received > 0 && message->msg_iovlen == 1 && receives_for_cyclone()) {
+    const std::span buffer(static_cast<std::byte*>(message->msg_iov->iov_base), message->msg_iov->iov_len);
+    const auto size = std::min(buffer.size(), static_cast<std::size_t>(received));
+    rtd::bus::cyclonedds::SampleLimits::of_process().mark_too_large(buffer.first(size));
+  }
+  return received;
+}
+#endif
