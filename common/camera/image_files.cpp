@@ -70,13 +70,29 @@ cv::Mat floats_in(const cv::Mat& pixels) {
   return nearest > 1e-3 && farthest < kFarthest_m ? values.clone() : cv::Mat();
 }
 
+/// 16 bits, one channel, without saturation: what a decoded image must be, or be refused.
+ImageRead as_depth(ImageRead result, const std::string& name) {
+  if (result.problem) return result;
+  if (result.image.type() != CV_16UC1) {
+    const bool painted = result.image.depth() == CV_8U && result.image.channels() > 1;
+    return refuse(SkipReason::kDepthNot16Bit, name,
+                  "depth is " + pixel_type_name(result.image) +
+                      ", needed is a 16-bit, 1-channel PNG (0 = no measurement)" +
+                      (painted ? "; colours are for people, and distances cannot be had back from them: export the "
+                                 "depth itself (of a RealSense recording: rs-convert -r, or give the recording)"
+                               : ""));
+  }
+  drop_saturated(result.image);
+  return result;
+}
+
 ImageRead depth_in(Bytes content, const std::string& name) {
   const bool known = vision::format_of(content) != vision::ImageFormat::kUnknown;
-  if (known) {
-    const ImageRead stored = decode(content, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
+  if (content.empty() || known) {
+    ImageRead stored = decode(content, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
     if (cv::Mat values = floats_in(stored.image); !values.empty()) return {std::move(values), {}};
+    return as_depth(std::move(stored), name);
   }
-  if (content.empty() || known) return decode_depth(content, name);
   vision::DecodedImage decoded = decode_depth_values(content);
   if (!decoded.problem.empty()) return refuse(SkipReason::kDepthUnreadable, name, decoded.problem);
   if (decoded.pixels.type() == CV_16UC1) drop_saturated(decoded.pixels);
@@ -108,19 +124,7 @@ ImageRead decode_color(Bytes encoded, const std::string& name) {
 }
 
 ImageRead decode_depth(Bytes encoded, const std::string& name) {
-  ImageRead result = decode(encoded, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable);
-  if (result.problem) return result;
-  if (result.image.type() != CV_16UC1) {
-    const bool painted = result.image.depth() == CV_8U && result.image.channels() > 1;
-    return refuse(SkipReason::kDepthNot16Bit, name,
-                  "depth is " + pixel_type_name(result.image) +
-                      ", needed is a 16-bit, 1-channel PNG (0 = no measurement)" +
-                      (painted ? "; colours are for people, and distances cannot be had back from them: export the "
-                                 "depth itself (of a RealSense recording: rs-convert -r, or give the recording)"
-                               : ""));
-  }
-  drop_saturated(result.image);
-  return result;
+  return as_depth(decode(encoded, name, vision::PixelsAs::kStored, SkipReason::kDepthUnreadable), name);
 }
 
 cv::Mat quantize_depth(const cv::Mat& values, double step) {

@@ -140,9 +140,8 @@ LensModel lens_model(const std::string& name) {
 
 std::string no_such_lens(const std::string& model) {
   return "no lens model here fits '" + io::abridged(model) +
-         "'; known: plumb_bob or Brown-Conrady, also inverse and modified (k1 k2 p1 p2 k3), rational_polynomial (... "
-         "k4 "
-         "k5 k6), equidistant, fisheye or Kannala-Brandt (k1 k2 k3 k4)";
+         "'; known: plumb_bob or Brown-Conrady, also inverse and modified (k1 k2 p1 p2 k3), rational_polynomial "
+         "(... k4 k5 k6), equidistant, fisheye or Kannala-Brandt (k1 k2 k3 k4)";
 }
 
 Parameters with_lens(const Parameters& camera, LensModel model, const std::string& origin) {

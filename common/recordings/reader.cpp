@@ -10,9 +10,9 @@
 #include <string_view>
 #include <utility>
 
-#include "common/mcap/compression.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/io/recording_forms.hpp"
+#include "common/mcap/compression.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/indexed_reader.hpp"
@@ -159,9 +159,9 @@ std::optional<RecordedMessage> Reader::first(const std::string& topic) {
 }
 
 std::optional<std::vector<std::uint8_t>> unpacked_message(ros::Bytes bytes) {
-  constexpr std::array<std::uint8_t, 4> kMagic = {0x28, 0xB5, 0x2F, 0xFD};
   constexpr std::uint64_t kMost = 256ULL << 20;
-  if (bytes.size() < kMagic.size() || !std::equal(kMagic.begin(), kMagic.end(), bytes.begin())) return std::nullopt;
+  const std::string_view packed(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  if (!packed.starts_with(io::kZstdMagic)) return std::nullopt;
   const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());  // errors are the largest
   if (size > std::min(kMost, mcap::largest_uncompressed_size(mcap::Compression::kZstd, bytes.size())))
     return std::nullopt;

@@ -41,7 +41,10 @@ class FirstPublisher {
     const std::lock_guard lock(mutex_);
     if (!followed_ || now_ns - received_ns_ > kSilentNs) followed_ = writer;
     const bool first = followed_ == writer;
-    first ? void(received_ns_ = now_ns) : void(++refused_);
+    if (first)
+      received_ns_ = now_ns;
+    else
+      ++refused_;
     return first;
   }
   void forget(const bus::WriterId& writer) {

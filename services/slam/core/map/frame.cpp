@@ -38,8 +38,7 @@ bool usable(const msg::Feature& feature) {
 }
 
 Eigen::Vector3d Frame::unproject(std::size_t feature) const {
-  const msg::Feature& f = features[feature];
-  return {(f.u_px - camera.cx) / camera.fx * f.depth_m, (f.v_px - camera.cy) / camera.fy * f.depth_m, f.depth_m};
+  return features[feature].depth_m * normalized(feature).homogeneous();
 }
 
 std::vector<Eigen::Vector3d> Frame::unproject_all() const {

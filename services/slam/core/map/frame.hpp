@@ -67,6 +67,11 @@ struct Frame {
   vision::RgbdMeasurement measurement(std::size_t feature) const {
     return {{features[feature].u_px, features[feature].v_px}, features[feature].depth_m};
   }
+  /// Where the ray of a feature meets the plane z = 1 of the camera.
+  Eigen::Vector2d normalized(std::size_t feature) const {
+    const msg::Feature& f = features[feature];
+    return {(f.u_px - camera.cx) / camera.fx, (f.v_px - camera.cy) / camera.fy};
+  }
   /// p_camera (m) of a feature with depth.
   Eigen::Vector3d unproject(std::size_t feature) const;
   /// p_camera (m) of all features with depth.

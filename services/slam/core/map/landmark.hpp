@@ -54,7 +54,7 @@ struct UnmeasuredDepth {
   Eigen::Vector3d seen_from = Eigen::Vector3d::Zero();  ///< camera that saw it first, world frame, m
 
   /// By how much it may be seen elsewhere in the image than where it is expected, from `camera`. docs/theory/mapping.md
-  /// Eq. (7).
+  /// Eq. (10).
   double sigma_px(const Eigen::Vector3d& camera, double fx_px) const {
     return sigma_per_m > 0 ? fx_px * sigma_per_m * (camera - seen_from).norm() : 0;
   }

@@ -47,11 +47,6 @@ struct View {
         landmarks(keyframe.landmarks),
         has_depth(measures_depth(*keyframe.frame, kApartFromHoles)) {}
 
-  static Eigen::Vector2d ray(const Frame& frame, std::uint32_t feature) {
-    const msg::Feature& f = frame.features[feature];
-    return {(f.u_px - frame.camera.cx) / frame.camera.fx, (f.v_px - frame.camera.cy) / frame.camera.fy};
-  }
-  Eigen::Vector2d normalized(std::uint32_t feature) const { return ray(frame, feature); }
   std::vector<std::uint32_t> free_features() const {
     std::vector<std::uint32_t> free;
     for (std::uint32_t i = 0; i < landmarks.size(); ++i) {
@@ -111,7 +106,7 @@ double depth_parallax_cosine(const Frame& frame, const msg::Feature& feature) {
 std::optional<Eigen::Vector3d> locate(const View& view1, std::uint32_t feature1, const View& view2,
                                       std::uint32_t feature2) {
   constexpr double kMaxCosineWithoutDepth = 0.9998;  // 1.15 degrees
-  const Eigen::Vector2d n1 = view1.normalized(feature1), n2 = view2.normalized(feature2);
+  const Eigen::Vector2d n1 = view1.frame.normalized(feature1), n2 = view2.frame.normalized(feature2);
   const Eigen::Vector3d ray1 = view1.T_world_camera.linear() * n1.homogeneous(),
                         ray2 = view2.T_world_camera.linear() * n2.homogeneous();
   const double ray_cosine = ray1.dot(ray2) / (ray1.norm() * ray2.norm());
@@ -240,17 +235,16 @@ std::vector<LandmarkId> create_from_depth(Map& map, KeyframeId id, double close_
 std::vector<LandmarkId> create_beyond_range(Map& map, KeyframeId id) {
   const Keyframe& keyframe = *map.find_keyframe(id);
   const Frame& frame = *keyframe.frame;
-  const Tiles beyond = tiles_beyond_range(frame);
-  std::vector<LandmarkId> created;
   const auto known = std::ranges::count_if(keyframe.landmarks, [](LandmarkId l) { return l != kNoLandmark; });
-  if (known >= kEnoughKnown || beyond.count() < kFewestTilesBeyond || measures_depth(frame, kMostOfTheView)) {
-    return created;
-  }
+  if (known >= kEnoughKnown || measures_depth(frame, kMostOfTheView)) return {};
+  const Tiles beyond = tiles_beyond_range(frame);
+  if (beyond.count() < kFewestTilesBeyond) return {};
+  std::vector<LandmarkId> created;
   const double assumed_m = kBeyondRange * depth_range_m(frame);
   for (std::uint32_t i = 0; i < frame.features.size(); ++i) {
     const msg::Feature& f = frame.features[i];
     if (f.depth_m > 0 || keyframe.landmarks[i] != kNoLandmark || !beyond.test(tile_of(frame, f.u_px, f.v_px))) continue;
-    const Eigen::Vector3d p_camera = assumed_m * View::ray(frame, i).homogeneous();
+    const Eigen::Vector3d p_camera = assumed_m * frame.normalized(i).homogeneous();
     created.push_back(map.add_landmark(keyframe.T_world_camera * p_camera, {id, i}));
     map.refresh_landmark(created.back());
   }

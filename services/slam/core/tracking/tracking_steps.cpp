@@ -228,10 +228,8 @@ PoseGuess track_motion(const Frame& frame, const TrackedFrame& last, const Local
   std::vector<Association> points = points_of(last, map, context);
   for (std::uint32_t i = 0; i < last.frame->features.size(); ++i) {
     if (last.frame->features[i].depth_m > 0 || last.landmarks[i] != kNoLandmark) continue;
-    const msg::Feature& feature = last.frame->features[i];
-    const vision::RgbdProjection& camera = last.frame->camera;
-    const Eigen::Vector3d ray((feature.u_px - camera.cx) / camera.fx, (feature.v_px - camera.cy) / camera.fy, 1);
-    points.push_back({i, kNoLandmark, last.T_world_camera * (kFar_m * ray), feature.static_probability});
+    points.push_back({i, kNoLandmark, last.T_world_camera * (kFar_m * last.frame->normalized(i).homogeneous()),
+                      last.frame->features[i].static_probability});
   }
   return track_points(frame, last, points, expected, context);
 }

@@ -8,6 +8,7 @@
 #include "services/slam/core/tracking/matcher.hpp"
 
 namespace rtd::slam {
+
 WitnessView look_for_witnesses(const Frame& frame, const LocalMap& map, const LocalMapTracking& tracking) {
   Tiles with_features, agreeing, expected, found;
   const auto add = [&](Tiles& tiles, double u_px, double v_px) { tiles.set(tile_of(frame, u_px, v_px)); };
