@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "common/concurrency/thread_priority.hpp"
+#include "common/geometry/trajectory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/text.hpp"
 #include "common/msg/point_cloud.hpp"
@@ -119,13 +120,22 @@ DenseService::DenseService(const Config& config, service::Runtime& runtime)
       slam_(service::follow_source("slam", runtime)) {
   runtime.stop.on_stop([joiner = joiner_] { joiner->close(); });
   keyframe_reader_ = runtime.bus.reader(
-      bus::topics::kKeyframes, [this](const auto& event) { joiner_->put(*event); }, slam_->callbacks());
+      bus::topics::kKeyframes,
+      [this](const auto& event) {
+        joiner_->put(*event);
+        if (!config_.out_dir.empty()) keyframe_masks_.put(*event);
+      },
+      slam_->callbacks());
   tracking_reader_ = runtime.bus.reader(
       bus::topics::kTracking, [this](const auto& result) { joiner_->put(*result); }, slam_->callbacks());
   mask_reader_ = runtime.bus.reader(
       bus::topics::kDynamicMask,
       [this](const auto& message) {
-        if (auto mask = from_message(*message)) joiner_->put(msg::to_ns(message->header.stamp), std::move(*mask));
+        auto mask = from_message(*message);
+        if (!mask) return;
+        const std::int64_t stamp_ns = msg::to_ns(message->header.stamp);
+        if (!config_.out_dir.empty()) keyframe_masks_.put(stamp_ns, *mask);
+        joiner_->put(stamp_ns, std::move(*mask));
       },
       filter_->callbacks());
   frame_reader_ = bus::FrameReader(
@@ -142,6 +152,7 @@ service::ExitCode DenseService::run() {
     } else if (navigation_) {
       navigation_->follow_corrections(kMovesPerTick);
     }
+    write_masks();
     publish_cloud();
     publish_grid();
     step_back();
@@ -174,6 +185,22 @@ void DenseService::integrate(const JoinedFrame& joined) {
   grid_stale_ = true;
   newest_stamp_ns_ = joined.result.stamp_ns;
   count(report);
+}
+
+/// For `rtd export`: a run whose masks cannot be written is complete otherwise.
+void DenseService::write_masks() {
+  const std::filesystem::path folder = std::filesystem::path(config_.out_dir) / "masks";
+  for (const auto& [stamp_ns, mask] : keyframe_masks_.take()) {
+    DynamicMask wide = grow(mask, config_.core.fusion.mask_grow_cells);
+    const cv::Mat cells(wide.rows, wide.columns, CV_8U, wide.cells.data());
+    std::error_code ignored;  // the write names the cause
+    std::filesystem::create_directories(folder, ignored);
+    try {
+      vision::write_image(folder / (geometry::tum_stamp(stamp_ns) + ".png"), cells, {.durable = false});
+    } catch (const io::IoError& error) {
+      if (mask_log_.pass()) SPDLOG_WARN("event=mask_not_written cause=\"{}\"", error.what());
+    }
+  }
 }
 
 void DenseService::update(const std::vector<KeyframeUpdate>& updates) {
@@ -255,6 +282,7 @@ void DenseService::forget_published_grid() {
 void DenseService::finish() {
   joiner_->close();
   while (const auto joined = joiner_->take(std::chrono::milliseconds(0))) integrate(*joined);
+  write_masks();
   update(joiner_->take_updates());
   report_state();
   const JoinCounters joins = joiner_->counters();

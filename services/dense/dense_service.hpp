@@ -20,6 +20,7 @@
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
+#include "services/dense/keyframe_masks.hpp"
 
 namespace rtd::dense {
 
@@ -70,7 +71,8 @@ struct ServiceConfig {
   void bind(auto& binder) {
     binder
         .field("out", out_dir,
-               "folder for static_map.ply, map.pgm, map.yaml and map.bt, written at the end; empty: none")
+               "folder for static_map.ply, map.pgm, map.yaml and map.bt, written at the end, and masks of keyframes; "
+               "empty: none")
         .option("--out");
     binder.field("every", every, {1, 10000}, "one frame in so many is fused, and each keyframe");
     binder.field("without_masks", without_masks,
@@ -103,6 +105,7 @@ class DenseService {
  private:
   void integrate(const JoinedFrame& joined);
   void update(const std::vector<KeyframeUpdate>& updates);
+  void write_masks();
   void count(const FusionReport& report);
   void publish_cloud();
   void publish_grid();
@@ -121,6 +124,7 @@ class DenseService {
   StaticMap map_;
   std::optional<NavigationMap> navigation_;
   std::shared_ptr<FrameJoiner> joiner_;
+  KeyframeMasks keyframe_masks_;
   bus::Writer<msg::PointCloud2> cloud_writer_;
   bus::Writer<msg::PointCloud2> moving_writer_;
   bus::Writer<msg::OccupancyGrid> grid_writer_;

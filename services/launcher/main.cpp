@@ -58,6 +58,8 @@ constexpr std::array kToolCommands = {
     ExternalCommand{"convert", "rtd-recording",
                     "Convert a recording with all its topics to MCAP, or frames to TUM or MCAP"},
     ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses"},
+    ExternalCommand{"export", "rtd-map", "Export a run for Gaussian splatting: COLMAP, nerfstudio, masks of what moves",
+                    "Tools", "scene"},
     ExternalCommand{"topics", "rtd-topics",
                     "List the topics of a DDS domain, measure rates, print messages, also of a recording"},
     ExternalCommand{"call", "rtd-topics", "Call a command of a running service: reset the map, pause a replay, ..."},

@@ -18,7 +18,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/json_text.hpp"
 #include "services/maps/map_report.hpp"
-#include "services/slam/map_file.hpp"
 
 namespace rtd::maps {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/occupancy/volume.hpp"
-#include "services/slam/core/map/map.hpp"
 #include "services/slam/core/map/trajectory.hpp"
+#include "services/slam/map_file.hpp"
 
 namespace rtd::maps {
 

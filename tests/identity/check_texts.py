@@ -28,7 +28,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 GOLDEN = HERE / "golden"
 COMMANDS = ("run", "demo", "doctor", "ablate", "benchmark", "eval", "report", "eval-detector", "convert", "info", "diff",
-            "map", "topics", "call", "keystore", "link", "record", "replay", "viewer")
+            "map", "export", "topics", "call", "keystore", "link", "record", "replay", "viewer")
 SERVICES = ("camera", "detector", "filter", "slam", "dense", "record", "replay", "link", "viewer")
 
 

@@ -11,7 +11,7 @@
         print(pose.stamp_s, pose.position_m)
 
 Poses are T_world_camera (or T_world_base, if the run had --camera-in-base): metres, unit quaternions x y z w, seconds
-as the source stamps them. Needs python3-numpy; `Run.dataframe()` also pandas; `run()` and recordings also the
+as the source stamps them. Needs python3-numpy; `dataframe()` also pandas; `run()` and recordings also the
 program rtd (the environment variable RTD_PROGRAM names another).
 """
 
@@ -49,7 +49,7 @@ class Pose:
     frame_id: str  # "map"
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, repr=False)
 class Poses:
     """N poses in order of time."""
 
@@ -82,6 +82,17 @@ class Poses:
     @property
     def path_length_m(self):
         return float(np.linalg.norm(np.diff(self.position_m, axis=0), axis=1).sum())
+
+    def dataframe(self):
+        """A pandas.DataFrame, a row per pose: stamp_ns, x, y, z, qx, qy, qz, qw."""
+        import pandas
+
+        columns = {"stamp_ns": self.stamp_ns, **dict(zip("xyz", self.position_m.T))}
+        return pandas.DataFrame({**columns, **dict(zip(("qx", "qy", "qz", "qw"), self.orientation_xyzw.T))})
+
+    def __repr__(self):
+        seconds = np.ptp(self.stamp_s) if len(self) else 0.0
+        return f"<Poses: {len(self)} in {seconds:.2f} s, path {self.path_length_m:.2f} m>"
 
 
 class Run:

@@ -76,6 +76,7 @@ std::string figure_rows(const std::vector<NamedFigure>& figures) {
 }
 
 struct Inputs {
+  std::string name;  ///< of the estimate, as it was given
   Trajectory estimate, groundtruth;
   std::vector<PublishedPose> published;  ///< of the estimate, where states are known
   std::optional<std::vector<std::int64_t>> frames_ns;
@@ -91,22 +92,21 @@ void require_stamps_where_given(const EvalOptions& options, const PoseFile& esti
 }
 
 /// Poses without stamps belong to those of the same number in the other file, whose stamps they take.
-void pair_by_number(const EvalOptions& options, PoseFile& estimate, PoseFile& groundtruth,
-                    std::vector<std::string>& notes) {
+void pair_by_number(const EvalOptions& options, PoseFile& estimate, PoseFile& groundtruth, Inputs& inputs) {
   if (!estimate.numbered && !groundtruth.numbered) return;
   const std::size_t poses = estimate.poses.size();
   if (poses != groundtruth.poses.size()) {
     throw TrajectoryError(fmt::format(
         "{}: 12 numbers a line have no stamps, and {} poses cannot be those of the {} in the other file; give --times "
         "FILE (a stamp in seconds a line, as times.txt of the sequence) or --rate HZ",
-        estimate.numbered ? options.estimate : options.groundtruth, poses, groundtruth.poses.size()));
+        estimate.numbered ? inputs.name : options.groundtruth, poses, groundtruth.poses.size()));
   }
   Trajectory& without = estimate.numbered ? estimate.poses : groundtruth.poses;
   const Trajectory& with = estimate.numbered ? groundtruth.poses : estimate.poses;
   for (std::size_t i = 0; i < poses; ++i) without[i].stamp_ns = with[i].stamp_ns;
-  notes.push_back(estimate.numbered && groundtruth.numbered
-                      ? fmt::format("no stamps: pose i belongs to pose i, at {:g} Hz (--rate HZ)", kNumberedHz)
-                      : "one file has no stamps: pose i belongs to pose i of the other");
+  inputs.notes.push_back(estimate.numbered && groundtruth.numbered
+                             ? fmt::format("no stamps: pose i belongs to pose i, at {:g} Hz (--rate HZ)", kNumberedHz)
+                             : "one file has no stamps: pose i belongs to pose i of the other");
 }
 
 /// The frames of the run that wrote the estimate: its folder has run.json.
@@ -133,12 +133,12 @@ void count_given(const Inputs& inputs, Coverage& coverage) {
   coverage.fraction = static_cast<double>(coverage.tracked) / static_cast<double>(coverage.frames);
 }
 
-Inputs read_inputs(const EvalOptions& options) {
-  PoseFile estimate = read_pose_file(options.estimate, options.stamps);
+Inputs read_inputs(const std::string& name, const EvalOptions& options) {
+  PoseFile estimate = read_pose_file(name, options.stamps);
   PoseFile groundtruth = read_pose_file(options.groundtruth, options.stamps);
   require_stamps_where_given(options, estimate, groundtruth);
-  Inputs inputs;
-  pair_by_number(options, estimate, groundtruth, inputs.notes);
+  Inputs inputs{.name = name};
+  pair_by_number(options, estimate, groundtruth, inputs);
   inputs.estimate = std::move(estimate.poses);
   inputs.groundtruth = std::move(groundtruth.poses);
   inputs.published = std::move(estimate.published);
@@ -150,7 +150,7 @@ Inputs read_inputs(const EvalOptions& options) {
   if (!options.frames.empty()) {
     inputs.frames_ns = read_frame_stamps(options.frames);
   } else {
-    take_frames_of_run(std::filesystem::path(options.estimate).parent_path(), inputs);
+    take_frames_of_run(std::filesystem::path(name).parent_path(), inputs);
   }
   return inputs;
 }
@@ -162,18 +162,33 @@ EvaluationOptions evaluation_options(const EvalOptions& options) {
   return result;
 }
 
-void write_plot(const Evaluation& evaluation, const Inputs& inputs, const EvalOptions& options) {
+/// An estimate and what became of it.
+struct Judged {
+  Inputs inputs;
+  Evaluation evaluation;
+
+  bool associates() const { return !evaluation.ate.points.empty(); }
+};
+
+std::string drawing(const std::vector<Judged>& all, const EvalOptions& options) {
+  Trajectory groundtruth = all.front().inputs.groundtruth;  // on the estimates' clock, which is the plot's
+  const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
+  for (StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
+  if (all.size() == 1)
+    return evaluation_svg(all.front().evaluation.ate, groundtruth,
+                          std::filesystem::path(all.front().inputs.name).filename().string());
+  std::vector<NamedAte> named;
+  for (const Judged& judged : all) named.push_back({judged.inputs.name, &judged.evaluation.ate});
+  return comparison_svg(named, groundtruth);
+}
+
+void write_plot(const std::vector<Judged>& all, const EvalOptions& options) {
   const std::filesystem::path path = options.plot;
   if (path.extension() != ".svg") {
     throw service::ConfigError("--plot " + options.plot + ": only SVG is written; give the file the ending .svg");
   }
-  Trajectory groundtruth = inputs.groundtruth;  // on the estimate's clock, which is the plot's
-  const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
-  for (StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
   try {
-    io::write_file(
-        path, evaluation_svg(evaluation.ate, groundtruth, std::filesystem::path(options.estimate).filename().string()),
-        {.named_by = io::NamedBy::kOperator});
+    io::write_file(path, drawing(all, options), {.named_by = io::NamedBy::kOperator});
   } catch (const io::IoError& error) {
     throw service::ConfigError(std::string("--plot ") + error.what());
   }
@@ -188,9 +203,10 @@ void leave_out_ate_of_two(Evaluation& evaluation, std::ostream& err) {
                      kFewestAtePoses - 1);
 }
 
-std::string evaluation_table(const Evaluation& e, const EvalOptions& options) {
+std::string evaluation_table(const Judged& judged, const EvalOptions& options) {
+  const Evaluation& e = judged.evaluation;
   const std::int64_t start_ns = e.ate.points.empty() ? 0 : e.ate.points.front().stamp_ns;
-  return fmt::format("estimate               {} ({} poses)\nground truth           {} ({} poses)\n", options.estimate,
+  return fmt::format("estimate               {} ({} poses)\nground truth           {} ({} poses)\n", judged.inputs.name,
                      e.estimate_poses, options.groundtruth, e.groundtruth_poses) +
          coverage_rows(e.coverage, start_ns) + alignment_rows(e.ate.alignment) +
          fmt::format("\n{:<22} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:<4} {:>6}\n", "", "rmse", "mean", "median", "std",
@@ -207,16 +223,50 @@ std::optional<Integrity> integrity_of(const Inputs& inputs, const std::optional<
   return judge_integrity(inputs.published, camera_truth(inputs.groundtruth, offset));
 }
 
-std::string text_of(const Evaluation& evaluation, const std::optional<Integrity>& integrity,
-                    const EvalOptions& options) {
-  if (!options.json)
-    return evaluation_table(evaluation, options) + (integrity ? figure_rows(integrity_figures(*integrity)) : "");
-  nlohmann::ordered_json json = to_json(evaluation);
+nlohmann::ordered_json json_of(const Judged& judged) {
+  nlohmann::ordered_json json = to_json(judged.evaluation);
+  const std::optional<Integrity> integrity = integrity_of(judged.inputs, judged.evaluation.offset);
   json["integrity"] = integrity ? to_json(*integrity) : nlohmann::ordered_json(nullptr);
-  return service::json_text(json) + "\n";
+  return json;
 }
 
-std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groundtruth, const EvalOptions& options) {
+std::string text_of_one(const Judged& judged, const EvalOptions& options) {
+  if (options.json) return service::json_text(json_of(judged)) + "\n";
+  const std::optional<Integrity> integrity = integrity_of(judged.inputs, judged.evaluation.offset);
+  return evaluation_table(judged, options) + (integrity ? figure_rows(integrity_figures(*integrity)) : "");
+}
+
+/// One row per estimate, in the order given.
+std::string comparison_table(const std::vector<Judged>& all, const EvalOptions& options) {
+  std::size_t width = 8;
+  for (const Judged& judged : all) width = std::max(width, judged.inputs.name.size());
+  std::string text = fmt::format("ground truth {} ({} poses)\n\n{:<{}} {:>6} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+                                 options.groundtruth, all.front().evaluation.groundtruth_poses, "estimate", width,
+                                 "poses", "coverage", "ATE rmse", "median", "max [m]", "RPE [m/s]", "[deg/s]");
+  for (const auto& [inputs, e] : all) {
+    const Statistics& ate = e.ate.error_m;
+    text += fmt::format("{:<{}} {:>6} {:>7.2f} % ", inputs.name, width, e.estimate_poses, 100 * e.coverage.fraction);
+    text += ate.count == 0
+                ? std::string("  no ATE\n")
+                : fmt::format("{:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}\n", ate.rmse, ate.median, ate.max,
+                              e.rpe_per_second.translation_m.rmse, e.rpe_per_second.rotation_rad.rmse * kRadToDeg);
+  }
+  return text;
+}
+
+std::string text_of(const std::vector<Judged>& all, const EvalOptions& options) {
+  if (all.size() == 1) return text_of_one(all.front(), options);
+  if (!options.json) return comparison_table(all, options);
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Judged& judged : all) {
+    list.push_back({{"estimate", judged.inputs.name}});
+    list.back().update(json_of(judged));
+  }
+  return service::json_text(nlohmann::ordered_json{{"groundtruth", options.groundtruth}, {"estimates", list}}) + "\n";
+}
+
+std::string explain_no_pairs(const Inputs& inputs, const EvalOptions& options) {
+  const Trajectory &estimate = inputs.estimate, &groundtruth = inputs.groundtruth;
   const auto span = [](const Trajectory& t) {
     return fmt::format("{:.6f} to {:.6f} s", seconds(t.front().stamp_ns), seconds(t.back().stamp_ns));
   };
@@ -226,8 +276,27 @@ std::string explain_no_pairs(const Trajectory& estimate, const Trajectory& groun
       "  ground truth {}: {}\n"
       "Are these files of the same sequence? A constant difference of clocks goes into --offset (added to the\n"
       "estimate; the starts differ by {:.6f} s), a coarse ground truth needs a larger --max-difference.\n",
-      options.max_difference_s, options.estimate, span(estimate), options.groundtruth, span(groundtruth),
+      options.max_difference_s, inputs.name, span(estimate), options.groundtruth, span(groundtruth),
       seconds(groundtruth.front().stamp_ns - estimate.front().stamp_ns));
+}
+
+Judged judge(const std::string& estimate, const EvalOptions& options) {
+  Judged judged{read_inputs(estimate, options), {}};
+  const Inputs& inputs = judged.inputs;
+  judged.evaluation = evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
+  count_given(inputs, judged.evaluation.coverage);
+  return judged;
+}
+
+/// Notes, and what was left out; of several estimates with the name.
+void explain(const Judged& judged, const EvalOptions& options, std::ostream& err) {
+  const Inputs& inputs = judged.inputs;
+  const std::string from = options.estimates.size() > 1 ? "rtd eval: " + inputs.name + ": " : "rtd eval: ";
+  if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))
+    err << from << "note: " << *unit << '\n';
+  if (judged.evaluation.offset) err << from << "note: " << explain(*judged.evaluation.offset) << '\n';
+  for (const std::string& note : inputs.notes) err << from << "note: " << note << '\n';
+  for (const std::string& damage : inputs.damages) err << from << "left out: " << damage << '\n';
 }
 
 }  // namespace
@@ -236,17 +305,23 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
   CLI::App* command = parent.add_subcommand(
       "trajectory", "Compare a trajectory with its ground truth (TUM, KITTI, EuRoC, or poses in a recording)");
   command
-      ->add_option("estimate", options.estimate,
-                   "Trajectory to judge: TUM (stamp tx ty tz qx qy qz qw), KITTI, EuRoC csv, or "
-                   "a recording: FILE[?topic=/x[&child=FRAME]]")
-      ->required();
-  command->add_option("groundtruth", options.groundtruth, "Ground truth, in any of these formats")->required();
+      ->add_option_function<std::vector<std::string>>(
+          "trajectories",
+          [&options](std::vector<std::string> files) {
+            options.groundtruth = files.back();
+            files.pop_back();
+            options.estimates = std::move(files);
+          },
+          "One trajectory or more to judge, then the ground truth: TUM (stamp tx ty tz qx qy qz qw), KITTI, EuRoC csv, "
+          "or a recording: FILE[?topic=/x[&child=FRAME]]")
+      ->required()
+      ->expected(2, CLI::detail::expected_max_vector_size);
   auto* rate = command->add_option("--rate", options.stamps.rate_hz, "Poses per second of a file in KITTI's format");
   rate->check(CLI::PositiveNumber);
   command->add_option("--times", options.stamps.times_file, "Stamps of a file in KITTI's format: seconds, one a line")
       ->excludes(rate);
   command->add_flag("--json", options.json, "Print JSON instead of a table");
-  command->add_option("--plot", options.plot, "Write an SVG: both trajectories, error by colour and over time");
+  command->add_option("--plot", options.plot, "Write an SVG: the trajectories, their errors by colour and over time");
   command->add_flag("--scale", options.scale, "Also fit a scale (Sim(3), for monocular trajectories)");
   command->add_option("--max-difference", options.max_difference_s, "Largest time between poses of a pair [s]")
       ->check(CLI::PositiveNumber)
@@ -260,23 +335,21 @@ CLI::App* add_eval_command(CLI::App& parent, EvalOptions& options) {
 
 int run_eval(const EvalOptions& options, std::ostream& out, std::ostream& err) {
   return guarded("rtd eval", err, [&] {
-    const Inputs inputs = read_inputs(options);
-    Evaluation evaluation =
-        evaluate(inputs.estimate, inputs.groundtruth, evaluation_options(options), inputs.frames_ns);
-    count_given(inputs, evaluation.coverage);
-    if (evaluation.ate.error_m.count == 0) {
-      err << explain_no_pairs(inputs.estimate, inputs.groundtruth, options);
-      return service::kRunFailed;
+    std::vector<Judged> all;
+    for (const std::string& estimate : options.estimates) all.push_back(judge(estimate, options));
+    for (Judged& judged : all) {
+      if (!judged.associates()) err << explain_no_pairs(judged.inputs, options);
+      leave_out_ate_of_two(judged.evaluation, err);
     }
-    leave_out_ate_of_two(evaluation, err);
-    if (!options.plot.empty()) write_plot(evaluation, inputs, options);
-    out << text_of(evaluation, integrity_of(inputs, evaluation.offset), options);
-    if (const auto unit = other_unit(inputs.estimate, inputs.groundtruth, evaluation_options(options)))
-      err << "rtd eval: note: " << *unit << '\n';
-    if (evaluation.offset) err << "rtd eval: note: " << explain(*evaluation.offset) << '\n';
-    for (const std::string& note : inputs.notes) err << "rtd eval: note: " << note << '\n';
-    for (const std::string& damage : inputs.damages) err << "rtd eval: left out: " << damage << '\n';
-    return inputs.damages.empty() ? service::kOk : service::kPartialLoss;
+    const auto some = std::ranges::count_if(all, &Judged::associates);
+    if (some == 0) return service::kRunFailed;
+    if (!options.plot.empty()) write_plot(all, options);
+    out << text_of(all, options);
+    for (const Judged& judged : all) explain(judged, options, err);
+    if (some < std::ssize(all)) return service::kRunFailed;
+    return std::ranges::all_of(all, [](const Judged& judged) { return judged.inputs.damages.empty(); })
+               ? service::kOk
+               : service::kPartialLoss;
   });
 }
 

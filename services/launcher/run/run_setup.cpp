@@ -324,9 +324,9 @@ void clear_out_dir(const RunSetup& setup) {
   for (const fs::path& file : more_trajectories(out_dir)) {
     if (!error) fs::remove(file, error);
   }
-  for (const char* left :
-       {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply", "static_map.ply",
-        "map.pgm", "map.yaml", "map.bt", "groundtruth.txt", "run.json", "report.json", "report.html", "map.html"}) {
+  for (const char* left : {"logs", "trace", "trajectory.txt", "trajectory_online.txt", "keyframes.txt", "map.ply",
+                           "static_map.ply", "map.pgm", "map.yaml", "map.bt", "masks", "groundtruth.txt", "run.json",
+                           "report.json", "report.html", "map.html"}) {
     if (!error) fs::remove_all(out_dir / left, error);
   }
   if (!error) fs::create_directories(out_dir / "logs", error);

@@ -114,6 +114,23 @@ TEST_F(DenseServiceTest, publishes_the_wall_without_the_person_and_writes_it) {
   EXPECT_GT(geometry::ply_vertices(file).value_or(0), 5000U);
 }
 
+TEST_F(DenseServiceTest, writes_the_masks_of_keyframes_that_slam_names_after_later_frames) {
+  config_.out_dir = folder_.string();
+  with_filter();
+  start();
+  send_and_wait(3);
+  msg::KeyframeEvent event{};
+  event.frame_seq = 1;
+  event.stamp_ns = 33'333'333;
+  event.T_world_camera.rotation_xyzw = {0, 0, 0, 1};
+  events_.write(event);
+  send(3);
+  ASSERT_TRUE(wait_at_least("frames", 4));
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "masks" / "0.033333.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "masks" / "0.066666.png"));
+}
+
 TEST_F(DenseServiceTest, publishes_a_floor_plan_when_it_changes_and_writes_maps_for_navigation) {
   Inbox<msg::OccupancyGrid> plans;
   receive(bus::topics::kOccupancyGrid, plans);

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/sanitizers.hpp"
@@ -76,6 +77,28 @@ TEST_F(EndToEndTest, a_lockstep_run_tracks_every_frame_and_reports_every_key) {
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("30 given, 30 used, "), HasSubstr("ATE rmse"), HasSubstr("report.html")));
 }
 
+/// `rtd export` of a run gives every keyframe, with its mask, where keyframes.txt says that it was.
+void expect_exported_keyframes(const std::string& run, const std::string& out) {
+  RtdCommand rtd;
+  ASSERT_EQ(rtd.run({"export", run, "--nerfstudio", out}), 0) << rtd.output();
+  const nlohmann::json frames = nlohmann::json::parse(text_of(out + "/transforms.json"))["frames"];
+  std::istringstream keyframes(text_of(run + "/keyframes.txt"));
+  std::size_t i = 0;
+  for (std::string line; std::getline(keyframes, line); ++i) {
+    std::istringstream row(line);
+    double value = 0;
+    row >> value;  // the stamp
+    ASSERT_LT(i, frames.size());
+    for (int axis = 0; row && axis < 3; ++axis) {
+      row >> value;
+      EXPECT_NEAR(frames[i]["transform_matrix"][axis][3], value, 1e-6) << line;
+    }
+    EXPECT_TRUE(fs::exists(out + "/" + frames[i]["mask_path"].get<std::string>()));
+  }
+  EXPECT_EQ(i, frames.size());
+  EXPECT_GT(i, 1U);
+}
+
 TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_run) {
   const std::vector<std::string> lockstep = {"--pace", "lockstep", "--detector", "off"};
   ASSERT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=30", lockstep)), 0) << rtd_.output();
@@ -92,6 +115,7 @@ TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_r
   EXPECT_GT(fs::file_size(scratch_ / "run.mcap"), 30U * 640 * 480 * 5) << "with all raw frames";
   EXPECT_THAT(text_of(out_ + "/logs/record.log"), HasSubstr("topic=rtd/frame messages=30 lost_in_transit=0"));
   EXPECT_FALSE(fs::exists(out_ + "/trace"));
+  expect_exported_keyframes(out_, scratch_ / "splat");
   std::map<std::string, int> spans;
   const nlohmann::json trace = nlohmann::json::parse(text_of(scratch_ / "trace.json"));
   for (const nlohmann::json& event : trace["traceEvents"])

@@ -6,9 +6,13 @@ import json
 import os
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
+import types
 import unittest
+import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "common" / "python"))
@@ -39,6 +43,14 @@ class Trajectories(Folder):
         matrix = rtd.read_poses(self.write("trajectory.txt", TRAJECTORY)).matrices[1]
         np.testing.assert_allclose(matrix @ [1, 0, 0, 1], [1, 3, 4, 1], atol=1e-7)
 
+    def test_poses_are_a_line_and_a_table(self):
+        poses = rtd.read_poses(self.write("trajectory.txt", TRAJECTORY))
+        self.assertEqual(repr(poses), "<Poses: 2 in 0.03 s, path 1.00 m>")
+        with unittest.mock.patch.dict(sys.modules, {"pandas": types.SimpleNamespace(DataFrame=dict)}):
+            table = poses.dataframe()
+        self.assertEqual(list(table), ["stamp_ns", "x", "y", "z", "qx", "qy", "qz", "qw"])
+        self.assertEqual((table["z"][1], table["qw"][0]), (4, 1))
+
     def test_comments_commas_and_a_byte_order_mark_are_taken(self):
         poses = rtd.read_poses(self.write("a.csv", "\ufeff# stamp x y z\n1.5,1,2,3,0,0,0,1\n"))
         self.assertEqual((len(poses), poses.stamp_ns[0]), (1, 1500000000))
@@ -49,6 +61,20 @@ class Trajectories(Folder):
     def test_a_broken_line_is_named(self):
         with self.assertRaisesRegex(rtd.RtdError, "line 2: expected"):
             rtd.read_poses(self.write("trajectory.txt", "1 2 3 4 5 6 7 8\n1 2 x\n"))
+
+
+class Installed(Folder):
+    def test_pip_installs_it_with_the_version_of_the_project(self):
+        tools = [sys.executable, "-c", "import setuptools, wheel, pip"]
+        if subprocess.run(tools, capture_output=True).returncode:
+            self.skipTest("needs python3-pip, python3-setuptools and python3-wheel")
+        shutil.copytree(ROOT / "common" / "python", self.folder / "python")
+        pip = [sys.executable, "-m", "pip", "install", "--no-index", "--no-build-isolation", "--no-deps", "--target"]
+        done = subprocess.run([*pip, self.folder / "lib", self.folder / "python"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((self.folder / "lib/rtd_slam/__init__.py").is_file())
+        version = re.search(r"project\(rtd_slam VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text())[1]
+        self.assertTrue((self.folder / f"lib/rtd_slam-{version}.dist-info").is_dir())
 
 
 class Runs(Folder):

@@ -135,6 +135,32 @@ TEST_F(EvalCommand, json_has_every_measure) {
   EXPECT_EQ(json["coverage"]["lost_spans"].size(), 1U);
 }
 
+TEST_F(EvalCommand, several_estimates_share_a_table_a_json_and_a_plot) {
+  const std::string same = folder_.write("same.txt", tum_text(winding_path(60, 0.1)));
+  const std::string svg_file = folder_.file("all.svg");
+  const Outcome outcome = run({estimate_, same, estimate_, truth_, "--plot", svg_file});
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("ATE rmse"), HasSubstr("\n" + estimate_), HasSubstr("\n" + same)));
+  const std::string svg = read_text(svg_file);
+  EXPECT_THAT(svg, AllOf(HasSubstr(same + ": ATE RMSE 0.00 mm"), HasSubstr(estimate_ + ": ATE RMSE"),
+                         HasSubstr("ground truth"), Not(HasSubstr("nan"))));
+  const auto json = nlohmann::json::parse(run({estimate_, same, truth_, "--json"}).out);
+  const auto alone = nlohmann::json::parse(run({estimate_, truth_, "--json"}).out);
+  EXPECT_EQ(json["estimates"][0]["ate_m"], alone["ate_m"]);
+  EXPECT_EQ(json["estimates"][1]["estimate"], same);
+}
+
+TEST_F(EvalCommand, one_estimate_of_several_without_pairs_is_named_and_the_others_are_judged) {
+  Trajectory later = winding_path(60, 0.1);
+  for (StampedPose& pose : later) pose.stamp_ns += 5'000'000'000'000;
+  const std::string other = folder_.write("other.txt", tum_text(later));
+  const Outcome outcome = run({estimate_, other, truth_});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("estimate     " + other), HasSubstr("--offset")));
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("\n" + estimate_), HasSubstr("no ATE")));
+  EXPECT_EQ(run({estimate_, folder_.file("missing.txt"), truth_}).code, 2);
+}
+
 TEST_F(EvalCommand, frame_list_gives_the_coverage_of_frames) {
   std::string list = "# colour images\n";
   for (int i = 0; i < 60; ++i)

@@ -187,6 +187,29 @@ void draw_errors_over_time(plot::Svg& svg, const Area& area, const AteResult& at
   plot::draw_legend(svg, {frame.x, area.y + 14}, {{"position error", palette::kBlue}});
 }
 
+/// Colours of several estimates; when they come again, dashed.
+plot::Stroke stroke_of(std::size_t place) {
+  constexpr std::array kColours{palette::kBlue, palette::kAmber, palette::kGreen, "#b03a5b", "#7a52a8", "#3aa6b8"};
+  return {kColours[place % kColours.size()], 1.8, place < kColours.size() ? "" : "5 3"};
+}
+
+void draw_errors_of_all(plot::Svg& svg, const Area& frame, const std::vector<NamedAte>& estimates, double max_m) {
+  std::int64_t first_ns = INT64_MAX, last_ns = INT64_MIN;
+  for (const auto& [name, ate] : estimates) {
+    if (ate->points.empty()) continue;
+    first_ns = std::min(first_ns, ate->points.front().stamp_ns);
+    last_ns = std::max(last_ns, ate->points.back().stamp_ns);
+  }
+  const LengthUnit unit = length_unit(max_m);
+  Chart chart(svg, frame, {0, std::max(seconds(last_ns - first_ns), 1e-3)}, {0, max_m * unit.per_metre * 1.06});
+  chart.draw_axes({"time since the first frame [s]", fmt::format("position error [{}]", unit.name)});
+  for (std::size_t i = 0; i < estimates.size(); ++i) {
+    const std::vector<AtePoint>& points = estimates[i].ate->points;
+    chart.curve(each(points, [&](const AtePoint& p) { return seconds(p.stamp_ns - first_ns); }),
+                each(points, [&](const AtePoint& p) { return p.error_m * unit.per_metre; }), stroke_of(i), kMaxGapS);
+  }
+}
+
 }  // namespace
 
 std::string length_text(double length_m) {
@@ -213,6 +236,34 @@ std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, 
   const std::int64_t first_ns = ate.points.front().stamp_ns, last_ns = ate.points.back().stamp_ns;
   draw_error_path(svg, {10, 76, 880, 590}, ate, within(groundtruth, first_ns, last_ns));
   draw_errors_over_time(svg, {10, 680, 880, 270}, ate);
+  return svg.document();
+}
+
+std::string comparison_svg(const std::vector<NamedAte>& estimates, const Trajectory& groundtruth) {
+  std::vector<PathCurve> curves{path_of(groundtruth)};
+  curves.front().stroke = {palette::kTruth, 2.2};
+  std::vector<Eigen::Vector3d> all_m = curves.front().points_m;
+  std::vector<plot::LegendEntry> legend{{"ground truth", palette::kTruth}};
+  double max_m = 1e-6;
+  for (const auto& [name, ate] : estimates) {
+    PathCurve curve{.stroke = stroke_of(curves.size() - 1)};
+    for (const AtePoint& point : ate->points) {
+      curve.stamps_ns.push_back(point.stamp_ns);
+      curve.points_m.push_back(point.estimate_m);
+      max_m = std::max(max_m, point.error_m);
+    }
+    all_m.insert(all_m.end(), curve.points_m.begin(), curve.points_m.end());
+    legend.push_back({fmt::format("{}: ATE RMSE {}", name, length_text(ate->error_m.rmse)), curve.stroke.colour});
+    curves.push_back(std::move(curve));
+  }
+  const double top = 20 + 18 * static_cast<double>(legend.size());
+  plot::Svg svg(900, top + 890, "Several trajectories");
+  for (std::size_t i = 0; i < legend.size(); ++i)
+    plot::draw_legend(svg, {20, 24 + 18 * static_cast<double>(i)}, {legend[i]});
+  const PlaneView plane = widest_plane(all_m);
+  const Chart paths = path_chart(svg, {68, top + 20, 800, 540}, all_m, plane);
+  for (const PathCurve& curve : curves) draw_path(svg, paths, curve, plane);
+  draw_errors_of_all(svg, {68, top + 630, 800, 210}, estimates, max_m);
   return svg.document();
 }
 

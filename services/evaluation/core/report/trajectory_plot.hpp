@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
@@ -16,5 +17,14 @@ Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int6
 
 /// One drawing for `rtd eval --plot`: path coloured by error, error over time, numbers in the title.
 std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, const std::string& title);
+
+/// An estimate of several, under its name in the legend.
+struct NamedAte {
+  std::string name;
+  const AteResult* ate;
+};
+
+/// The same for several estimates of one ground truth: a colour for each.
+std::string comparison_svg(const std::vector<NamedAte>& estimates, const Trajectory& groundtruth);
 
 }  // namespace rtd::eval
