@@ -92,15 +92,14 @@ void RobotFeed::read(bus::Reader<T>& reader, const bus::Topic<T>& topic, bool wa
   }
 }
 
-void RobotFeed::set_options(const std::optional<PageOptions>& options) {
-  if (options == options_) return;
-  options_ = options;
+void RobotFeed::set_options(const PageOptions& wanted) {
+  if (wanted == options_) return;
+  options_ = wanted;
   using namespace bus::topics;
-  const PageOptions wanted = options.value_or(PageOptions::nothing());
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
-  read(movers_, kMovers, options.has_value(),
+  read(movers_, kMovers, true,
        [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
-  read(truth_, kGroundTruth, options.has_value(), [](RobotMirror& to, const msg::PoseStamped& pose) {
+  read(truth_, kGroundTruth, true, [](RobotMirror& to, const msg::PoseStamped& pose) {
     const msg::Point& position = pose.pose.position;
     to.add_truth(to_ns(pose.header.stamp), {position.x, position.y, position.z});
   });

@@ -30,8 +30,8 @@ class RobotFeed {
   /// `mirror` outlives the feed.
   RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Mailbox mailbox);
 
-  /// What pages want now; nothing: no page is open.
-  void set_options(const std::optional<PageOptions>& options);
+  /// What is read now besides poses, keyframes and heartbeats.
+  void set_options(const PageOptions& wanted);
   RobotMirror& mirror() { return mirror_; }
 
  private:

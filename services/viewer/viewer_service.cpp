@@ -263,7 +263,8 @@ void ViewerService::find_robots() {
 }
 
 void ViewerService::apply_options() {
-  for (auto& [name, feed] : robots_) feed->set_options(page_.options(feed->mirror().index()));
+  const PageOptions later = PageOptions::for_later(service::monotonic_ns());
+  for (auto& [name, feed] : robots_) feed->set_options(page_.options(feed->mirror().index()).value_or(later));
 }
 
 void ViewerService::refresh(std::int64_t now) {

@@ -33,6 +33,7 @@ constexpr std::array kEncodings = {ColorEncoding{"rgb8", CV_8UC3, cv::COLOR_RGB2
                                    ColorEncoding{"YUYV", CV_8UC2, cv::COLOR_YUV2BGR_YUYV},  // RealSense SDK
                                    ColorEncoding{"nv12", CV_8UC1, cv::COLOR_YUV2BGR_NV12},
                                    ColorEncoding{"nv21", CV_8UC1, cv::COLOR_YUV2BGR_NV21},
+                                   ColorEncoding{"nv24", CV_8UC1, cv::COLOR_YUV2BGR_YUYV},  // by way of yuyv
                                    ColorEncoding{"bayer_rggb8", CV_8UC1, cv::COLOR_BayerRGGB2BGR},
                                    ColorEncoding{"bayer_bggr8", CV_8UC1, cv::COLOR_BayerBGGR2BGR},
                                    ColorEncoding{"bayer_gbrg8", CV_8UC1, cv::COLOR_BayerGBRG2BGR},
@@ -41,6 +42,16 @@ constexpr std::array kEncodings = {ColorEncoding{"rgb8", CV_8UC3, cv::COLOR_RGB2
                                    ColorEncoding{"bayer_bggr16", CV_16UC1, cv::COLOR_BayerBGGR2BGR},
                                    ColorEncoding{"bayer_gbrg16", CV_16UC1, cv::COLOR_BayerGBRG2BGR},
                                    ColorEncoding{"bayer_grbg16", CV_16UC1, cv::COLOR_BayerGRBG2BGR}};
+
+/// OpenCV does not know nv24: of each two pixels the blue chroma of the left and the red one of the right are taken.
+cv::Mat yuyv_of_nv24(const cv::Mat& planes) {
+  cv::Mat yuyv(planes.rows / 3, planes.cols, CV_8UC2);
+  const cv::Mat chroma = planes.rowRange(yuyv.rows, planes.rows).clone().reshape(2, yuyv.rows);
+  yuyv.forEach<cv::Vec2b>([&](cv::Vec2b& pixel, const int* at) {
+    pixel = {planes.at<std::uint8_t>(at[0], at[1]), chroma.at<cv::Vec2b>(at[0], at[1])[at[1] % 2]};
+  });
+  return yuyv;
+}
 
 /// A view, or the upper bytes of 16-bit pixels.
 cv::Mat eight_bit(const cv::Mat& pixels) {
@@ -69,13 +80,14 @@ std::string known_color_encodings() {
 std::string size_defect(const ColorEncoding& encoding, cv::Size size_px) {
   constexpr int kBayer_px = 3;
   if (encoding.rows(2) == 3 && (size_px.width % 2 != 0 || size_px.height % 3 != 0)) return "its sides must be even";
-  if (CV_MAT_CN(encoding.type) == 2 && size_px.width % 2 != 0) return "its width must be even";
+  if ((CV_MAT_CN(encoding.type) == 2 || encoding.name == "nv24") && size_px.width % 2 != 0)
+    return "its width must be even";
   if (!encoding.name.starts_with("bayer_") || (size_px.width >= kBayer_px && size_px.height >= kBayer_px)) return {};
   return "it needs 3 x 3 px";
 }
 
 cv::Mat to_bgr(const ColorEncoding& encoding, const cv::Mat& pixels) {
-  const cv::Mat eight = eight_bit(pixels);
+  const cv::Mat eight = encoding.name == "nv24" ? yuyv_of_nv24(pixels) : eight_bit(pixels);
   cv::Mat bgr;
   if (encoding.conversion == kAsItIs) {
     eight.copyTo(bgr);

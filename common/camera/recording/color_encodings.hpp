@@ -14,8 +14,11 @@ struct ColorEncoding {
   std::string_view name;
   int type;        ///< OpenCV's, of the pixels as they lie in the message
   int conversion;  ///< OpenCV's, of 8-bit pixels to BGR; negative when they are BGR
-  /// Rows of bytes of an image: colour in half the size lies below the grey of nv12 and nv21.
-  std::uint32_t rows(std::uint32_t height) const { return name.starts_with("nv") ? height + height / 2 : height; }
+  /// Rows of bytes of an image: colour lies below the grey, of nv12 and nv21 in half the size, of nv24 in full size.
+  std::uint32_t rows(std::uint32_t height) const {
+    if (name == "nv24") return 3 * height;
+    return name.starts_with("nv") ? height + height / 2 : height;
+  }
 };
 
 /// Null when it is not known. Names are those of sensor_msgs/image_encodings.hpp and those that drivers use beside

@@ -221,7 +221,7 @@ msg::Image unpacked(const msg::CompressedImage& packed) {
   return image;
 }
 
-/// nv12 and nv21 have half a row more for each, which other images must not.
+/// nv12, nv21 and nv24 have more rows than they say, which other images must not.
 msg::Image plain_image(const RecordedMessage& message) {
   try {
     return ros::decode<msg::Image>(message.wire, message.bytes);
@@ -229,8 +229,9 @@ msg::Image plain_image(const RecordedMessage& message) {
     msg::Image image;
     message.wire == ros::Wire::kCdr ? ros::WireReader<ros::Wire::kCdr>(message.bytes)(image)
                                     : ros::WireReader<ros::Wire::kRos1>(message.bytes)(image);
-    const std::uint64_t rows = std::uint64_t{image.step} * image.height;
-    if (!image.encoding.starts_with("nv") || 2 * image.data.size() != 3 * rows) throw;
+    const ColorEncoding* const encoding =
+        image.encoding.starts_with("nv") ? find_color_encoding(image.encoding) : nullptr;
+    if (encoding == nullptr || image.data.size() != std::uint64_t{image.step} * encoding->rows(image.height)) throw;
     return image;
   }
 }

@@ -24,8 +24,14 @@ struct PageOptions {
             moving || other.moving, plan || other.plan,   depth || other.depth};
   }
   bool operator==(const PageOptions&) const = default;
-  /// No page is open.
   static PageOptions nothing() { return {false, false, false, false, false, false}; }
+  /// No page is open: what one that opens after the end could not get any more, and for a second in five the image.
+  static PageOptions for_later(std::int64_t now_ns) {
+    PageOptions later = nothing();
+    later.points = later.dense = later.plan = true;
+    later.image = now_ns / 1'000'000'000 % 5 == 0;
+    return later;
+  }
 };
 
 /// How much a page gets.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/viewer/core/page_session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -198,6 +199,13 @@ std::optional<Frame> PageSession::next_item(const RobotMirror& robot, Sent& sent
     const RobotMirror::Message& message = robot.item(static_cast<Item>(place));
     if (message.revision == sent.items[place]) continue;
     if (static_cast<Item>(place) == Item::kTracking) {
+      const auto& recent = robot.recent_tracking();
+      if (sent.items[place] == 0) sent.recent_until = recent.empty() ? 0 : recent.back().revision;
+      if (sent.items[place] < sent.recent_until) {
+        const auto next = std::ranges::upper_bound(recent, sent.items[place], {}, &RobotMirror::Message::revision);
+        sent.items[place] = next->revision;
+        return shared_frame(true, next->payload);
+      }
       if (static_cast<double>(now_ns - sent.tracking_ns) * hub_.limits_.messages_per_s < 1e9) continue;
       sent.tracking_ns = now_ns;
     }

@@ -61,6 +61,7 @@ class PageSession : public Session {
     };
     std::array<Cloud, kCloudKinds> clouds{};
     std::array<std::uint64_t, kItems> items{};
+    std::uint64_t recent_until = 0;  ///< poses from before the page was open come up to this revision
     std::int64_t tracking_ns = 0, view_ns = 0, view_stamp_ns = 0;
     std::array<Payload, 6> view_parts;           ///< of that stamp
     std::vector<std::pair<bool, Payload>> view;  ///< parts still to be sent: text or not

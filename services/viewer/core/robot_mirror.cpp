@@ -142,6 +142,12 @@ void RobotMirror::add(const msg::TrackingResult& result, double finished_ms) {
     if (result.map_id == 0) truth_.add_estimate(result.stamp_ns, position);
   }
   set_payload(Item::kTracking, page::tracking(index_, result, finished_ms, filter_stage_ms_));
+  constexpr double kApart_ms = 200;
+  constexpr std::size_t kRecent = 300;
+  if (std::abs(finished_ms - recent_ms_) < kApart_ms) return;
+  recent_ms_ = finished_ms;
+  recent_tracking_.push_back(item(Item::kTracking));
+  if (recent_tracking_.size() > kRecent) recent_tracking_.pop_front();
 }
 
 void RobotMirror::add(const msg::FeatureFrame& frame) {

@@ -114,6 +114,8 @@ class RobotMirror {
     Payload payload;
   };
   const Message& item(Item item) const { return items_[static_cast<std::size_t>(item)]; }
+  /// Poses of about the last minute, some a second, oldest first: the plots of a page that opens later.
+  const std::deque<Message>& recent_tracking() const { return recent_tracking_; }
   /// The newest image that the filter has looked at, with its overlays; without a filter, the newest one.
   std::optional<View> newest_view() const;
   const TruthTrack& truth() const { return truth_; }
@@ -149,6 +151,8 @@ class RobotMirror {
   const std::uint8_t index_;
   MapMirror map_;
   std::array<Message, kItems> items_;
+  std::deque<Message> recent_tracking_;
+  double recent_ms_ = 0;  ///< when the newest of them was ready
   Overlays images_, features_, masks_, boxes_, people_, depths_;
   std::map<std::string, KnownService> services_;
   std::optional<std::array<float, msg::kFilterStages>> filter_stage_ms_;

@@ -30,6 +30,7 @@ import { parseHash } from "./share.js";
 import { hasEnded, situation } from "./waiting.js";
 
 const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
+const kOldImage_s = 3;
 const kFrugalImagePause = 2;   // times the pause between two drawings of the map
 
 class App {
@@ -192,13 +193,16 @@ class App {
     this.fleet.update(session, this.selected, link, now_ms);
     this.historyBar.update(robot);
     if (this.frame.shows("events")) this.events.update(robot);
-    this.controls.update(robot, allowed);
+    this.controls.update(robot, allowed, connection.state === "open" && session.hello?.control === false);
     this.replay.update(robot, allowed);
     if (this.asked.at_s !== undefined && this.replay.seekable) {
       this.replay.seek(this.asked.at_s);
       this.asked.at_s = undefined;
     }
     this.layers.update(session, robot);
+    const age_s = robot?.imageAge_s(now_ms) ?? 0;
+    byId("image-age").hidden = !(age_s > kOldImage_s) || byId("image").hidden || this.image.frozen;
+    setText(byId("image-age"), `${Math.round(age_s)} s ago`);
     if (!robot?.image) this.image.update(robot, robot !== undefined && hasEnded(robot));
     const { count, reason } = this.undecoded;
     setText(byId("undecoded"), count > 0 ? `${count} ${count === 1 ? "message" : "messages"} could not be read: ${reason}` : "");

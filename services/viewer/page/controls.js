@@ -13,10 +13,11 @@ export class Controls {
     this.shown = "";
   }
 
-  update(robot, allowed) {
+  /** allowed: whether commands are taken; refused: whether the server said that they are not. */
+  update(robot, allowed, refused) {
     const commands = robot?.commands ?? [];
     byId("controls-none").hidden = commands.length > 0;
-    byId("controls-off").hidden = allowed || commands.length === 0;
+    byId("controls-off").hidden = !refused || commands.length === 0;
     const key = JSON.stringify([robot?.index, allowed, commands]);
     if (key !== this.shown) this.#build(robot, commands, allowed);
     this.shown = key;
@@ -45,7 +46,6 @@ export class Controls {
     const answer = el("output", { class: "answer", "aria-live": "polite" });
     const send = (argument, button) => this.#call(robot, command, argument, button, answer);
     const row = el("div", { class: "command", "data-command": command.name }, ...this.#inputs(command, send), answer);
-    if (!allowed) row.title = "The viewer was started with --read-only.";
     return row;
   }
 

@@ -20,7 +20,7 @@ export class Header {
     setText(byId("state-text"), report.title);
     this.#notice(report, robot);
     this.#robots(session, robot);
-    setText(byId("age"), robot?.tracking ? ms(pose_ms) : "–");
+    setText(byId("age"), robot?.tracking && !report.quiet ? ms(pose_ms) : "–");
     setAttribute(byId("age"), "data-level", report.level === "wait" || !(pose_ms > kGoodAge_ms) ? "ok" : pose_ms > kBadAge_ms ? "bad" : "warn");
     setText(byId("keyframes"), count(robot?.tracking?.keyframes ?? robot?.count("posedCount")));
     setText(byId("landmarks"), count(robot?.tracking?.landmarks ?? robot?.count("pointTotal")));

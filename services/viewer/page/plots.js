@@ -11,6 +11,7 @@ import { percentile } from "./series.js";
 import { inOrder } from "./session.js";
 
 const kP50 = "#27ae60", kP99 = "#e2574c";
+const kStays_s = 5;             // after the last pose the plots stand still
 const kLeastShare_ms = 0.05;    // a stage that never takes so long is not worth a colour
 
 export class Plots {
@@ -28,11 +29,12 @@ export class Plots {
   }
 
   /** now_s: browser's clock of the histories. */
-  update(robot, now_s) {
+  update(robot, screen_s) {
     byId("plots-none").hidden = Boolean(robot?.tracking);
     byId("plots").hidden = !robot?.tracking;
     if (!robot?.tracking) return;
     const { latency_ms, inliers, removedShare } = robot.series;
+    const now_s = Math.min(screen_s, robot.trackingAt_ms / 1000 + kStays_s);
     const p50 = percentile(latency_ms.values, 0.5), p99 = percentile(latency_ms.values, 0.99);
     this.#write("latency", `p50 ${ms(p50)} · p99 ${ms(p99)}`);
     drawLine(this.parts.latency.canvas, latency_ms, now_s, { marks: [{ value: p50, color: kP50 }, { value: p99, color: kP99 }] });

@@ -271,8 +271,8 @@ export class Scene {
 
   #viewMoved() {
     const view = this.camera.position.toArray().concat(this.camera.quaternion.toArray()).join();
-    const moved = view !== this.view;
-    this.view = view;
+    const moved = view !== this.drawnFrom;
+    this.drawnFrom = view;
     return moved;
   }
 

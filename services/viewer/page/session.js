@@ -9,6 +9,7 @@ import { MapState } from "./world.js";
 import { Series } from "./series.js";
 
 const kOverlaySlack_s = { depth: 0.4, doubt: 0.4 };   // an overlay belongs to an image if their stamps differ by less, usually 0.1
+const kCatchUp_ms = 3000;
 export const kOfImage = ["image", "features", "people", "mask", "depth"];
 const kStageOrder = ["wait_detections", "extract", "masks", "ego_motion", "depth_check", "fuse", "match", "local_map", "pose",
                      "relocalize", "keyframe", "mapping"];   // as they follow each other; others come last
@@ -69,11 +70,18 @@ export class RobotState {
     return this.tracking !== null && this.tracking.state !== "ok";
   }
 
+  /** Of the image that is shown, by the poses: an image may have come long after it was taken. */
+  imageAge_s(now_ms) {
+    if (!this.image || !this.tracking) return 0;
+    return (now_ms - this.trackingAt_ms) / 1000 + Math.max(0, this.tracking.stamp_s - this.image.stamp_s);
+  }
+
   count(name) {
     return [...this.maps.values()].reduce((sum, map) => sum + map[name], 0);
   }
 
-  setServices(services) {
+  setServices(reported) {
+    const services = reported.map((one) => (one.name === "viewer" && one.state === "gone" ? { ...one, state: "running" } : one));   // it sent this
     for (const { name, pid } of services) {
       const before = this.services.find((one) => one.name === name);
       if (before?.state === "finished" && before.pid !== pid) this.deaths.delete(name);   // another run
@@ -84,7 +92,7 @@ export class RobotState {
   }
 
   forgetMaps() {
-    this.events.map("the map begins again", this.tracking, this.playback);
+    if (this.count("posedCount") > 0) this.events.map("the map begins again", this.tracking, this.playback);
     this.maps.clear();
     this.movers = [];
   }
@@ -150,11 +158,11 @@ export class Session {
   applyText(message, now_ms) {
     const robot = () => this.robot(message.robot ?? 0);
     switch (message.type) {
-      case "hello": this.hello = message; break;
+      case "hello": [this.hello, this.helloAt_ms] = [message, now_ms]; break;
       case "link": this.link = message; break;
       case "robots": this.#setRobots(message.robots); break;
       case "map_reset": robot().forgetMaps(); this.generation += 1; break;
-      case "tracking": robot().setTracking(message, now_ms); break;
+      case "tracking": robot().setTracking(message, this.#readyAt_ms(message, now_ms)); break;
       case "status": robot().setServices(message.services); break;
       case "boxes": robot().overlays.boxes = message; break;
       case "movers": robot().movers = message.movers; break;
@@ -162,6 +170,12 @@ export class Session {
       case "playback": robot().playback = message; break;
       case "truth_error": robot().truthError = message; break;
     }
+  }
+
+  /** Browser's clock. Poses from before the page was open come first, all at once. */
+  #readyAt_ms({ finished_ms }, now_ms) {
+    const since_ms = now_ms - this.helloAt_ms, server_ms = this.hello?.server_ms + since_ms;
+    return since_ms < kCatchUp_ms && finished_ms < server_ms ? now_ms - (server_ms - finished_ms) : now_ms;
   }
 
   /** A message from decode(). */

@@ -53,7 +53,7 @@ function ofServices(robot, hello) {
   if (failed) return report("bad", `${failed.name} failed`, failed.message || "Its log says why.");
   if (robot.tracking) return null;
   const running = (name) => robot.services.some((service) => service.name === name && !kStopped.includes(service.state));
-  if (!kSources.some(running)) return report("wait", "Waiting for a camera", "Neither a camera nor a replay is running.");
+  if (!kSources.some(running)) return report("wait", "Waiting for a camera", sourcesOf(robot).length > 0 ? "Neither a camera nor a replay is running." : "No camera or replay has reported yet.");
   if (!running("slam")) return report("wait", "Waiting for slam", "Images arrive, but rtd-slam is not running.");
   const busy = robot.services.filter((service) => service.state === "starting" || service.state === "ready");
   const reasons = busy.map(({ name, message }) => (message ? `${name}: ${message}` : `${name} is starting`));

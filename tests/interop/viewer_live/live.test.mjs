@@ -83,6 +83,22 @@ test("the page waits, shows the map as it grows, and has as many points as slam"
   await screenshot(page, "live_map");
 });
 
+test("a first page that opens after the end has the map, the plots and the last image", async () => {
+  services.push(await startViewer());
+  const viewer = services.at(-1), slam = start("slam", "--out", join(folder, "late"), ...kLockstep);
+  start("filter", "--set", "filter.detector=off", ...kLockstep);
+  await startCamera().ended;
+  await setTimeout(1500);   // the last changes of the map
+  await slam.stop();
+  page = await openPage(browser, viewer.address);
+  await waitFor(page, () => {
+    const { tracking, imageStamp_s } = rtdViewer.state().robots[0] ?? {};
+    return tracking?.landmarks > 500 && rtdViewer.counts.pointsTotal > 0.9 * tracking.landmarks && imageStamp_s !== null;
+  });
+  await waitFor(page, () => !document.getElementById("image").hidden);
+  await screenshot(page, "late");
+});
+
 test("slam answers what the page asks of a landmark, a keyframe and the pose", async () => {
   await startRun();
   startCamera();

@@ -112,7 +112,9 @@ test("a link opens the same layers and view; a file holds the map", async () => 
   await waitFor(page, () => rtdViewer.state().robots[0].maps[0].dense === 5000);
   await page.click("#layer-keyframes");
   await page.keyboard.press("3");
-  await page.keyboard.press("h");
+  await page.evaluate(() => rtdViewer.measureFps(0.2));   // frames were drawn
+  for (const key of ["h", "Escape"]) await page.keyboard.press(key);
+  await page.click("#share-open");
   const linkNow = () => page.$eval("#share-link", (field) => field.value);
   const link = await linkNow();
   assert.ok(link.includes("token=picture"), "it lets others look");

@@ -170,9 +170,9 @@ TEST(BagSource, asks_which_when_several_topics_fit) {
 TEST(BagSource, names_an_encoding_that_cannot_be_read) {
   ImageBag planar;
   planar.add_info();
-  planar.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "nv24");
+  planar.add_color(1, cv::Mat(ImageBag::kHeight, ImageBag::kWidth, CV_8UC1), "nv42");
   planar.add_depth(1);
-  EXPECT_TRUE(refuses(planar.uri(), {"'nv24'", "rgb8, bgr8", "yuv422", "bayer_grbg16", "JPEG", ImageBag::kColor}));
+  EXPECT_TRUE(refuses(planar.uri(), {"'nv42'", "rgb8, bgr8", "yuv422", "bayer_grbg16", "JPEG", ImageBag::kColor}));
   ImageBag bag;
   bag.add_info();
   bag.add_color(1);

@@ -194,10 +194,10 @@ TEST_F(Ros2DeviceTest, refuses_encodings_sizes_and_byte_orders_by_name) {
   refusal(
       [&] {
         info();
-        color(1, ImageBag::color(), "nv24");
+        color(1, ImageBag::color(), "nv42");
         depth(1);
       },
-      "'nv24'");
+      "'nv42'");
   refusal(
       [&] {
         info();

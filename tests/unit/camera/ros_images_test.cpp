@@ -79,6 +79,17 @@ TEST(RosColor, reads_both_orders_of_yuv_422) {
   for (const char* encoding : {"yuv422_yuy2", "yuy2", "yuyv", "YUYV"}) expect_color(encoding, yuyv, {0, 0, 255}, 2);
 }
 
+TEST(RosColor, reads_nv24_whose_colour_lies_below_the_grey) {
+  cv::Mat planes(18, 8, CV_8UC1, cv::Scalar(81));
+  planes.rowRange(6, 18).reshape(2, 6).setTo(cv::Scalar(90, 240));
+  msg::Image image = ImageBag::image(planes, "nv24", 1);
+  image.height = 6;
+  const ImageRead read = decode_color(recorded("sensor_msgs/Image", image));
+  ASSERT_FALSE(read.problem) << read.problem->detail;
+  ASSERT_EQ(read.image.size(), cv::Size(8, 6));
+  EXPECT_LE(cv::norm(read.image, cv::Mat(6, 8, CV_8UC3, cv::Scalar(0, 0, 255)), cv::NORM_INF), 2);
+}
+
 TEST(RosColor, reads_grey_and_colours_of_8_and_16_bits) {
   const cv::Mat bgr(4, 5, CV_8UC3, cv::Scalar(kOrange)), rgb(4, 5, CV_8UC3, cv::Scalar(220, 120, 30));
   const cv::Mat bgra(4, 5, CV_8UC4, cv::Scalar(30, 120, 220, 9)), rgba(4, 5, CV_8UC4, cv::Scalar(220, 120, 30, 9));

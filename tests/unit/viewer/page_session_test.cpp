@@ -95,6 +95,25 @@ TEST_F(PageSessionTest, a_page_without_the_token_sees_everything_and_calls_nothi
   EXPECT_THAT(calls, ElementsAre("/slam/save_map(a)"));
 }
 
+TEST_F(PageSessionTest, a_late_page_gets_the_poses_of_the_last_minute_first) {
+  RobotMirror& robot = *hub.robot("");
+  for (int i = 0; i <= 1000; ++i) robot.add(result_at(0.01 * i), 100.0 * i);
+  const auto page = hub.open();
+  std::size_t poses = 0;
+  while (auto frame = page->next(kSecond))
+    if (name_of(*frame) == "tracking") ++poses;
+  EXPECT_EQ(poses, 300U) << "five a second";
+  robot.add(result_at(99), 200'000);
+  EXPECT_TRUE(take(*page, 2 * kSecond).contains("tracking"));
+}
+
+TEST_F(PageSessionTest, without_a_page_what_a_late_one_needs_is_read) {
+  EXPECT_FALSE(hub.options(0));
+  const PageOptions later = PageOptions::for_later(5 * kSecond);
+  EXPECT_TRUE(later.points && later.dense && later.plan && later.image);
+  EXPECT_FALSE(later.mask || later.features || later.people || PageOptions::for_later(6 * kSecond).image);
+}
+
 TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
   RobotMirror& robot = *hub.robot("");
   robot.map().add(map_of(50, 100));

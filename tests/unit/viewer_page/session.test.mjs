@@ -39,6 +39,20 @@ test("robots are found by name, whatever index a restarted viewer gives them", (
   assert.equal(again.robots.get(1).mapKey(0), session.robots.get(0).mapKey(0));
 });
 
+test("a page that opens late knows how old pose and image are, and says only what it knows", () => {
+  const session = new Session(), robot = session.robot(0);
+  session.applyText({ type: "hello", server_ms: 700_000 }, 50);
+  session.applyText({ type: "map_reset", robot: 0 }, 50);
+  assert.deepEqual(robot.events.entries, [], "there was no map before");
+  session.applyText({ ...tracking, finished_ms: 100_000, stamp_s: 8 }, 60);
+  robot.image = { stamp_s: 6 };
+  assert.deepEqual([robot.trackingAt_ms, robot.imageAge_s(60)], [50 - 600_000, 602.01]);
+  session.applyText({ ...tracking, finished_ms: 100_000 }, 9000);
+  assert.equal(robot.trackingAt_ms, 9000, "whatever the clocks do later");
+  session.applyText({ type: "status", robot: 0, services: [{ name: "viewer", state: "gone" }, { name: "slam", state: "gone" }] }, 9000);
+  assert.deepEqual(robot.services.map(({ state }) => state), ["running", "gone"], "the viewer itself sent this");
+});
+
 test("map_reset forgets the maps and what moves in them, and nothing else", () => {
   const session = new Session();
   session.applyText(tracking, 0);

@@ -27,7 +27,10 @@ test("from the connection to the first pose, each missing part is named", () => 
   assert.equal(title(undefined, 0, { ...open, state: "connecting" }), "Connecting");
   assert.equal(title(undefined, 0, open, null), "Connected");
   assert.match(situation({ connection: open, hello, now_ms: 0 }).detail, /domain 3/);
+  const sourceOf = (services) => situation({ connection: open, hello, robot: robotWith(services), now_ms: 0 });
   assert.equal(title(robotWith([service("slam")])), "Waiting for a camera");
+  assert.match(sourceOf([service("slam")]).detail, /has reported yet/, "it may be there");
+  assert.match(sourceOf([service("camera", "finished"), service("slam")]).detail, /Neither/);
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")])), "Waiting for slam");
   const waiting = robotWith([service("replay"), service("slam", "ready"), service("filter", "starting", "waits for the detector")]);
   assert.match(situation({ connection: open, hello, robot: waiting, now_ms: 0 }).detail, /slam is starting; filter: waits for the detector/);
