@@ -10,6 +10,9 @@
     for pose in rtd.run("--source", "synthetic:office"):
         print(pose.stamp_s, pose.position_m)
 
+    for pose in rtd.subscribe():         # of a system that runs already
+        print(pose)
+
 Poses are T_world_camera (or T_world_base, if the run had --camera-in-base): metres, unit quaternions x y z w, seconds
 as the source stamps them. Needs python3-numpy; `dataframe()` also pandas; `run()` and recordings also the
 program rtd (the environment variable RTD_PROGRAM names another).
@@ -28,7 +31,7 @@ import time
 
 import numpy as np
 
-__all__ = ["Pose", "Poses", "Run", "RtdError", "STATES", "open", "read_poses", "run"]
+__all__ = ["Pose", "Poses", "Run", "RtdError", "STATES", "open", "read_poses", "run", "subscribe"]
 
 # msg::TrackingState by number (common/msg/tracking.hpp).
 STATES = ("initializing", "ok", "recently lost", "lost", "relocalizing", "predicted", "doubtful", "odometry")
@@ -198,18 +201,49 @@ def read_poses(path, topic=POSE_TOPIC):
     return _stacked(rows)
 
 
-def run(*arguments, out=None):
+def run(*arguments, out=None, **options):
     """Starts `rtd run ARGUMENTS` and gives its poses (Pose) as they are published; ends with the run.
 
     `arguments`: options of `rtd run`, but for --out, which is `out`, else a folder that is removed afterwards. Leaving
     the loop ends the run as Ctrl-C does. Raises RtdError when the run fails, with its last lines."""
+    if options:
+        written = ", ".join(f'"--{name.replace("_", "-")}", {value!r}' for name, value in options.items())
+        raise TypeError(f"run() takes options as the command line does: rtd_slam.run({written})")
+    return _run(arguments, out)
+
+
+def subscribe(*arguments):
+    """Gives the poses (Pose) of a system that runs already, until the loop is left or `rtd topics` ends.
+
+    `arguments`: where its topics are (--domain, --dds, --robot, ...), as `rtd topics echo` takes them. Waits for poses
+    without end. Raises RtdError when they cannot be read."""
+    with tempfile.TemporaryFile("w+") as log:
+        reader = _echo(arguments, log)
+        try:
+            for line in reader.stdout:
+                yield _live_pose(line)
+            if reader.wait():
+                raise RtdError(f"rtd topics ended with code {reader.returncode}:\n{_last_lines(log)}")
+        finally:
+            _end(reader)
+
+
+def _echo(network, log):
+    command = [_program(), "topics", "echo", POSE_TOPIC, "--json", *map(str, network)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
+
+
+def _live_pose(line):
+    stamp_ns, position, orientation, frame_id = _pose_of(json.loads(line)["message"])
+    return Pose(stamp_ns * 1e-9, position, orientation, frame_id)
+
+
+def _run(arguments, out):
     folder = out or tempfile.mkdtemp(prefix="rtd-")
     program = _program()
     network = _network_options(arguments)
     log = tempfile.TemporaryFile("w+")
-    reader = subprocess.Popen(
-        [program, "topics", "echo", POSE_TOPIC, "--json", *network], stdout=subprocess.PIPE, stderr=log, text=True
-    )
+    reader = _echo(network, log)
     child = subprocess.Popen(
         [program, "run", *map(str, arguments), "--out", str(folder)], stdout=log, stderr=subprocess.STDOUT
     )
@@ -235,8 +269,7 @@ def _live_poses(reader, child):
             line = reader.stdout.readline()
             if not line:
                 break
-            stamp_ns, position, orientation, frame_id = _pose_of(json.loads(line)["message"])
-            yield Pose(stamp_ns * 1e-9, position, orientation, frame_id)
+            yield _live_pose(line)
         elif ended_s is not None and time.monotonic() - ended_s > 1:
             break  # what was on its way has arrived
     child.wait()

@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""The Python package: reads what `rtd run --out` writes, and starts runs."""
+"""The Python package: reads what `rtd run --out` writes, starts runs and follows them."""
 
+import itertools
 import json
 import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -109,6 +111,12 @@ class Runs(Folder):
         self.assertEqual(rtd.STATES, tuple(re.findall(r'"([^"]+)"', names)))
 
 
+class Options(unittest.TestCase):
+    def test_by_name_are_answered_with_how_to_write_them(self):
+        with self.assertRaisesRegex(TypeError, re.escape("""run("--source", 'synthetic:office', "--save-map", 'a')""")):
+            rtd.run(source="synthetic:office", save_map="a")
+
+
 class Programs(Folder):
     def setUp(self):
         super().setUp()
@@ -125,6 +133,18 @@ class Programs(Folder):
     def test_a_run_that_fails_says_why(self):
         with self.assertRaisesRegex(rtd.RtdError, "no_such_scene"):
             list(rtd.run("--source", "synthetic:no_such_scene", "--domain", 87))
+
+    def test_a_running_system_gives_its_poses(self):
+        command = [self.program, "run", "--source", "synthetic:office?frames=0", "--detector", "off", "--domain", "87"]
+        with subprocess.Popen([*command, "--out", str(self.folder / "out")], stdout=subprocess.DEVNULL) as running:
+            poses = list(itertools.islice(rtd.subscribe("--domain", 87), 5))
+            running.send_signal(signal.SIGINT)
+        self.assertTrue(all(pose.frame_id == "map" for pose in poses))
+        self.assertLess(poses[0].stamp_s, poses[4].stamp_s)
+
+    def test_a_wrong_option_ends_the_subscription(self):
+        with self.assertRaisesRegex(rtd.RtdError, "domain"):
+            list(rtd.subscribe("--domain", 5000))
 
     def test_poses_of_a_recording(self):
         recording = self.folder / "run.mcap"
