@@ -299,7 +299,7 @@ bool Heartbeat::check_peers() {
   const double own_host = find_metric(own_, metric::kHostId).value_or(0);
   bool changed = false;
   for (auto& [name, peer] : peers_.peers()) {
-    PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
+    PeerEvidence evidence{std::max<std::int64_t>(now_ns - peer.received_ns, 0), ProcessState::kUnknown};
     const bool here = find_metric(peer.status, metric::kHostId).value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
     peer.evidence = evidence;

@@ -46,6 +46,9 @@ Terminal open_terminal(bool quiet) {
   Terminal::Options options;
   options.interactive = isatty(STDERR_FILENO) == 1;
   options.quiet = quiet;
+  const char *no_color = std::getenv("NO_COLOR"), *term = std::getenv("TERM");
+  const bool plain = (no_color != nullptr && *no_color != '\0') || term == nullptr || std::string_view(term) == "dumb";
+  options.color = options.interactive && !plain;
   options.has_room = [] { return takes_line(STDERR_FILENO); };
   winsize size{};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20) options.columns = size.ws_col;

@@ -72,7 +72,12 @@ TEST(live_status, shows_everything_in_one_short_line) {
   status.dropped = 2;
   status.latency_ms = 31.4;
   EXPECT_EQ(format_live_status(status),
-            "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 2  latency 31 ms");
+            "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 2  latency 31 ms  3 s left");
+  status.total = 21000;
+  EXPECT_THAT(format_live_status(status), testing::EndsWith("  12 min left"));
+  status.frames = status.total;
+  EXPECT_THAT(format_live_status(status), testing::EndsWith(" ms"));
+  status.frames = 123;
   status.total = 0;
   status.state = msg::TrackingState::kRecentlyLost;
   EXPECT_EQ(format_live_status(status),

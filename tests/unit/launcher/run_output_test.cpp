@@ -80,6 +80,14 @@ TEST(terminal, continues_long_lines_below) {
   EXPECT_EQ(lengths[2], 206U) << "no word is cut";
 }
 
+TEST(terminal, colors_warnings_alone) {
+  std::ostringstream out;
+  Terminal terminal(out, {.interactive = true, .color = true});
+  terminal.print("hello");
+  terminal.warn("slam died");
+  EXPECT_EQ(out.str(), "hello\n\033[33mslam died\033[0m\n");
+}
+
 TEST(terminal, quiet_shows_warnings_only) {
   std::ostringstream out;
   Terminal terminal(out, {false, true, 80});

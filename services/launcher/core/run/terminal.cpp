@@ -29,10 +29,14 @@ std::string wrapped(const std::string& line) {
 }  // namespace
 
 void Terminal::print(const std::string& line) {
-  if (!options_.quiet) warn(line);
+  if (!options_.quiet) write(line, false);
 }
 
 void Terminal::warn(const std::string& line) {
+  write(line, options_.color);
+}
+
+void Terminal::write(const std::string& line, bool colored) {
   if (!takes_line()) {
     ++left_out_;
     return;
@@ -40,7 +44,7 @@ void Terminal::warn(const std::string& line) {
   clear_status();
   if (left_out_ > 0) out_ << "  (" << left_out_ << " messages left out, because the output was not read)\n";
   left_out_ = 0;
-  out_ << wrapped(io::printable(line)) << '\n' << std::flush;
+  out_ << (colored ? "\033[33m" : "") << wrapped(io::printable(line)) << (colored ? "\033[0m\n" : "\n") << std::flush;
 }
 
 bool Terminal::takes_line() {

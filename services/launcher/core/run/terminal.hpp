@@ -20,6 +20,7 @@ class Terminal {
     bool quiet = false;        ///< only warnings
     std::size_t columns = 100;
     std::function<bool()> has_room = {};  ///< whether the stream takes a line without a wait; empty: always
+    bool color = false;                   ///< warnings in yellow
   };
 
   Terminal(std::ostream& out, Options options) : out_(out), options_(std::move(options)) {}
@@ -31,6 +32,7 @@ class Terminal {
   void end_status();
 
  private:
+  void write(const std::string& line, bool colored);
   bool takes_line();
   void clear_status();
 
