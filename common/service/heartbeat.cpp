@@ -135,7 +135,7 @@ void Heartbeat::exclude_standstill(std::int64_t now_ns) {
               stood_still_ns / 1'000'000);
   const std::lock_guard lock(mutex_);
   progress_.exclude_pause(stood_still_ns);
-  peers_.exclude_pause(stood_still_ns);
+  peers_.exclude_pause(stood_still_ns, now_ns);
 }
 
 void Heartbeat::forget_silent(std::int64_t now_ns) {
@@ -299,7 +299,7 @@ bool Heartbeat::check_peers() {
   const double own_host = find_metric(own_, metric::kHostId).value_or(0);
   bool changed = false;
   for (auto& [name, peer] : peers_.peers()) {
-    PeerEvidence evidence{std::max<std::int64_t>(now_ns - peer.received_ns, 0), ProcessState::kUnknown};
+    PeerEvidence evidence{now_ns - peer.received_ns, ProcessState::kUnknown};
     const bool here = find_metric(peer.status, metric::kHostId).value_or(0) == own_host;
     if (evidence.silent_ns >= kSuspectAfterNs && here) evidence.process = process_state(peer.status.pid);
     peer.evidence = evidence;

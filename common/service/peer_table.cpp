@@ -112,8 +112,8 @@ std::vector<std::string> PeerTable::forget_silent(std::int64_t now_ns) {
   return gone;
 }
 
-void PeerTable::exclude_pause(std::int64_t stood_still_ns) {
-  for (auto& [name, peer] : peers_) peer.received_ns += stood_still_ns;
+void PeerTable::exclude_pause(std::int64_t stood_still_ns, std::int64_t now_ns) {
+  for (auto& [name, peer] : peers_) peer.received_ns = std::min(peer.received_ns + stood_still_ns, now_ns);
 }
 
 }  // namespace rtd::service

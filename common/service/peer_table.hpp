@@ -72,8 +72,8 @@ class PeerTable {
   void accept_only_from(const std::string& service, std::weak_ptr<const bus::SourceGate> writers);
   /// Forgets who has been silent for long; the names that go.
   std::vector<std::string> forget_silent(std::int64_t now_ns);
-  /// This process stood still for so long: no service was silent meanwhile.
-  void exclude_pause(std::int64_t stood_still_ns);
+  /// This process stood still for so long: no service was silent meanwhile. Heartbeats may have come since.
+  void exclude_pause(std::int64_t stood_still_ns, std::int64_t now_ns);
 
   std::map<std::string, Peer>& peers() { return peers_; }
   const std::map<std::string, Peer>& peers() const { return peers_; }

@@ -82,22 +82,23 @@ void add_points(Scene& scene, const slam::MapContents& contents, const slam::Key
   }
 }
 
-/// The keyframes of the largest map, by stamp.
-std::map<std::int64_t, const slam::Keyframe*> keyframes_of(const slam::MapContents& contents) {
+using Keyframes = std::map<std::int64_t, const slam::Keyframe*>;  ///< by stamp
+
+/// Of the largest map.
+Keyframes keyframes_of(const slam::MapContents& contents) {
   const std::vector<MapPart> maps = report_on(contents, 0).maps;
   const auto largest = std::ranges::max_element(maps, {}, &MapPart::keyframes);
-  std::map<std::int64_t, const slam::Keyframe*> keyframes;
+  Keyframes keyframes;
   for (const slam::Keyframe& keyframe : contents.keyframes)
     if (keyframe.map == largest->id) keyframes[keyframe.frame->stamp_ns] = &keyframe;
   return keyframes;
 }
 
 /// Plays the source and writes the images of the keyframes, with their masks.
-Scene write_images(const slam::MapContents& contents, camera::FrameSource& source, const fs::path& masks,
-                   const std::vector<SceneFolder>& folders) {
+Scene write_images(const slam::MapContents& contents, const Keyframes& keyframes, camera::FrameSource& source,
+                   const fs::path& masks, const std::vector<SceneFolder>& folders) {
   Scene scene{.camera = source.info().camera.parameters(), .masked = fs::is_directory(masks)};
   const Undistortion undistortion(source.info().camera);
-  const auto keyframes = keyframes_of(contents);
   for (auto next = keyframes.begin(); next != keyframes.end();) {
     source.pass_over(next->first);
     const std::optional<camera::SourceFrame> frame = source.next();
@@ -167,13 +168,14 @@ int write_scene(const SceneRequest& request, std::ostream& out, std::ostream& er
     throw service::ConfigError(map.string() +
                                ": no such file; 'rtd run' writes it, but for --localize-only and --save-map");
   const slam::MapContents contents = slam::load_map_file(map);
-  const Scene scene = write_images(contents, *source, run / "masks", folders);
-  const std::size_t keyframes = keyframes_of(contents).size(), without = keyframes - scene.views.size();
+  const Keyframes keyframes = keyframes_of(contents);
+  const Scene scene = write_images(contents, keyframes, *source, run / "masks", folders);
+  const std::size_t without = keyframes.size() - scene.views.size();
   if (scene.views.empty())
     throw service::ConfigError(
         fmt::format("none of the {} keyframes has an image in {}{}: --source names the source of "
                     "the run",
-                    keyframes, source->info().uri, scene.masked ? " and a mask" : ""));
+                    keyframes.size(), source->info().uri, scene.masked ? " and a mask" : ""));
   write_models(scene, request);
   for (const SceneFolder& folder : folders)
     out << fmt::format("{}: {} keyframes {} masks, {} landmarks\n", folder.path.string(), scene.views.size(),
@@ -182,7 +184,7 @@ int write_scene(const SceneRequest& request, std::ostream& out, std::ostream& er
     err << "rtd export: no masks: people and moving things will leave ghosts; 'rtd run --dense' keeps the masks\n";
   if (without > 0)
     err << fmt::format("rtd export: {} of {} keyframes left out: the source has no such frame, or the run no mask\n",
-                       without, keyframes);
+                       without, keyframes.size());
   return scene.masked && without == 0 ? service::kOk : service::kPartialLoss;
 }
 
@@ -197,8 +199,7 @@ void add_scene_command(CLI::App& app, SceneRequest& request) {
   command->add_option("--source", request.source, "Where the images are (default: the source of the run)");
   command->footer(
       "Exit code: 0 done, 1 the output cannot be written, 2 run or source cannot be read, or the output exists, 3 "
-      "done, "
-      "but masks or images of keyframes are missing");
+      "done, but masks or images of keyframes are missing");
 }
 
 int export_scene(const SceneRequest& request, std::ostream& out, std::ostream& err) {

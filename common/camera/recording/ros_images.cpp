@@ -229,8 +229,7 @@ msg::Image plain_image(const RecordedMessage& message) {
     msg::Image image;
     message.wire == ros::Wire::kCdr ? ros::WireReader<ros::Wire::kCdr>(message.bytes)(image)
                                     : ros::WireReader<ros::Wire::kRos1>(message.bytes)(image);
-    const ColorEncoding* const encoding =
-        image.encoding.starts_with("nv") ? find_color_encoding(image.encoding) : nullptr;
+    const auto* encoding = image.encoding.starts_with("nv") ? find_color_encoding(image.encoding) : nullptr;
     if (encoding == nullptr || image.data.size() != std::uint64_t{image.step} * encoding->rows(image.height)) throw;
     return image;
   }

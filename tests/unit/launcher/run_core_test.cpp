@@ -4,6 +4,7 @@
 
 #include "common/process/posix_process_host.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
+#include "services/launcher/core/run/terminal.hpp"
 #include "services/launcher/process/service_logs.hpp"
 #include "services/launcher/process/usage_registry.hpp"
 

@@ -89,8 +89,10 @@ TEST_F(PeerTableTest, one_that_was_silent_for_a_while_has_its_name_back) {
 TEST_F(PeerTableTest, no_peer_was_silent_while_this_process_stood_still) {
   EXPECT_TRUE(beat("slam", 1));
   now_ns_ += 10 * kS;
-  table_.exclude_pause(10 * kS);
+  EXPECT_TRUE(beat("filter", 2));
+  table_.exclude_pause(10 * kS, now_ns_);
   EXPECT_EQ(table_.peers().at("slam").received_ns, now_ns_);
+  EXPECT_EQ(table_.peers().at("filter").received_ns, now_ns_) << "not in the future";
 }
 
 }  // namespace

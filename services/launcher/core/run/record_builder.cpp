@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -370,30 +369,6 @@ std::vector<run_record::SampleFrame> SampleKeeper::samples() const {
   std::vector<run_record::SampleFrame> result;
   for (std::uint64_t i = 0; i < wanted_; ++i) result.push_back(std::move(complete[i * complete.size() / wanted_]));
   return result;
-}
-
-namespace {
-
-/// "  12 s left", "  3 min left"; empty where that is not known.
-std::string time_left(const LiveStatus& status) {
-  if (status.frames >= status.total || status.frames_per_s < 0.1) return "";
-  const double left_s = static_cast<double>(status.total - status.frames) / status.frames_per_s;
-  return left_s < 100 ? fmt::format("  {:.0f} s left", std::ceil(left_s))
-                      : fmt::format("  {:.0f} min left", left_s / 60);
-}
-
-}  // namespace
-
-std::string format_live_status(const LiveStatus& status) {
-  const std::string count = status.total > 0 ? fmt::format("frame {}/{}", status.frames, status.total)
-                                             : fmt::format("frame {}", status.frames);
-  if (!status.tracking) {
-    return count + "  " +
-           (status.camera_message.empty() ? "waiting for the first pose" : "camera " + status.camera_message);
-  }
-  return fmt::format("{}  {:.1f} fps  {}  inliers {}  dynamic {}  dropped {}  latency {:.0f} ms{}", count,
-                     status.frames_per_s, to_string(status.state), status.inliers, status.dynamic_points,
-                     status.dropped, status.latency_ms, time_left(status));
 }
 
 std::string online_trajectory_text(const std::vector<run_record::FrameRecord>& frames, std::int64_t end_ns) {

@@ -31,10 +31,6 @@ struct LiveStatus {
   double latency_ms = 0;      ///< camera -> pose, median of the last frames
 };
 
-/// "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 0  latency 31 ms  3 s left", the last part for
-/// sources of known length.
-std::string format_live_status(const LiveStatus& status);
-
 /// Services of others in the domain that disturb no run, besides recorders, which only subscribe.
 struct Tolerated {
   bool detector = false;         ///< it runs on another host

@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/launcher/core/run/terminal.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 #include "common/io/printable.hpp"
+#include "services/launcher/core/run/record_builder.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -26,7 +31,27 @@ std::string wrapped(const std::string& line) {
   return result + text;
 }
 
+/// "  12 s left", "  3 min left"; empty where that is not known.
+std::string time_left(const LiveStatus& status) {
+  if (status.frames >= status.total || status.frames_per_s < 0.1) return "";
+  const double left_s = static_cast<double>(status.total - status.frames) / status.frames_per_s;
+  return left_s < 100 ? fmt::format("  {:.0f} s left", std::ceil(left_s))
+                      : fmt::format("  {:.0f} min left", left_s / 60);
+}
+
 }  // namespace
+
+std::string format_live_status(const LiveStatus& status) {
+  const std::string count = status.total > 0 ? fmt::format("frame {}/{}", status.frames, status.total)
+                                             : fmt::format("frame {}", status.frames);
+  if (!status.tracking) {
+    return count + "  " +
+           (status.camera_message.empty() ? "waiting for the first pose" : "camera " + status.camera_message);
+  }
+  return fmt::format("{}  {:.1f} fps  {}  inliers {}  dynamic {}  dropped {}  latency {:.0f} ms{}", count,
+                     status.frames_per_s, to_string(status.state), status.inliers, status.dynamic_points,
+                     status.dropped, status.latency_ms, time_left(status));
+}
 
 void Terminal::print(const std::string& line) {
   if (!options_.quiet) write(line, false);

@@ -10,6 +10,12 @@
 
 namespace rtd::launcher {
 
+struct LiveStatus;
+
+/// "frame 123/210  29.8 fps  ok  inliers 213  dynamic 87  dropped 0  latency 31 ms  3 s left", the last part for
+/// sources of known length.
+std::string format_live_status(const LiveStatus& status);
+
 /// Output of a run: messages, and one status line that is updated in place on a terminal and repeated every two seconds
 /// elsewhere. Lines that the stream has no room for are left out and counted: a run must not stand still because no one
 /// reads what it prints. Time comes in as an argument. Not thread-safe.
