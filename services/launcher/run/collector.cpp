@@ -108,8 +108,13 @@ Collector::~Collector() {
   encoder_.join();
 }
 
+/// A reader may find a writer before that writer finds it, and miss what is written meanwhile. Writers find the readers
+/// of a process in their order: whose heartbeat has come has found the readers before it too.
 bool Collector::connected(bool with_filter) const {
-  return tracking_reader_.matched() > 0 && (!with_filter || features_reader_.matched() > 0);
+  const std::lock_guard lock(mutex_);
+  const auto found = [this](const char* service) { return peers_.peers().contains(service); };
+  return tracking_reader_.matched() > 0 && found("slam") &&
+         (!with_filter || (features_reader_.matched() > 0 && found("filter")));
 }
 
 std::string Collector::active_services(const Tolerated& tolerated) const {

@@ -99,9 +99,14 @@ TEST_F(CollectorTest, keeps_the_masks_of_people_in_its_pictures_when_it_is_to) {
 }
 
 TEST_F(CollectorTest, receives_from_filter_and_slam_before_the_first_frame) {
+  bus::Writer<msg::ServiceStatus> of_filter = bus_->writer(bus::topics::kStatus);
+  EXPECT_FALSE(collector_.connected()) << "nothing says that they have found its readers";
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  status_.write({.service = "slam"});
+  of_filter.write({.service = "filter"});
+  while (!collector_.connected() && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
   EXPECT_TRUE(collector_.connected());
   tracking_ = {};
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (collector_.connected() && std::chrono::steady_clock::now() < give_up) std::this_thread::yield();
   EXPECT_FALSE(collector_.connected());
 }
