@@ -99,7 +99,7 @@ struct WitnessConfig {
   bool used = true;
   double after_s = 0.5;
   double settle_s = 2;
-  double probation_share = 0.5;
+  double probation_share = 0.25;
   int enough = 30;
   double found_share = 0.4;
   double decisive_share = 0.2;
@@ -111,7 +111,8 @@ struct WitnessConfig {
     binder.field("settle_s", settle_s, {0.0, 60.0},
                  "poses in a new map are doubtful until witnesses carry one, but for no longer than this");
     binder.field("probation_share", probation_share, {0.0, 100.0},
-                 "all other landmarks together weigh at most this share of what the witnesses in view weigh");
+                 "all other landmarks together have at most this share of the witnesses' influence on the pose, "
+                 "more where those are few");
     binder.field("enough", enough, {1, 2048}, "so many witnesses carry a pose, wherever they are in the image, or ...");
     binder.field("found_share", found_share, {0.0, 1.0}, "... this share of the tiles where witnesses should be seen");
     binder.field(

@@ -426,6 +426,39 @@ TEST(SlamSystem, low_static_probability_takes_the_weight_from_moving_objects) {
   EXPECT_LT(worst_m, 2e-3);
 }
 
+/// A wall that is too far for its depth to be measured, from second 1.5 on with a man in front of whom nobody knows.
+std::unique_ptr<msg::FeatureFrame> wall_and_walker(const FeatureWorld& wall, const FeatureWorld& man,
+                                                   std::uint64_t seq) {
+  constexpr std::uint64_t kAppears = 45;
+  auto frame = wall.view(seq);
+  if (seq < kAppears) return frame;
+  for (std::uint32_t i = 0; i < frame->count; ++i) frame->features[i].depth_m = 0;
+  Eigen::Isometry3d T_man_camera = FeatureWorld::T_world_camera(seq);
+  T_man_camera.translation().x() -= 0.03 * static_cast<double>(seq - kAppears);  // he walks to the right
+  const auto seen = man.view(seq, T_man_camera);
+  for (std::uint32_t i = 0; i < seen->count && frame->count < msg::kMaxFeatures; ++i)
+    frame->features[frame->count++] = seen->features[i];
+  return frame;
+}
+
+TEST(SlamSystem, who_walks_near_by_does_not_outweigh_a_far_wall_that_was_seen_at_rest) {
+  FeatureWorld::Options options{.points = 900, .min_depth_m = 5.2, .max_depth_m = 5.6};
+  options.noise_px = 0.5;
+  const FeatureWorld wall(options);
+  options.points = 300;
+  options.min_depth_m = 2;
+  options.max_depth_m = 2.2;
+  options.seed = 2;
+  const FeatureWorld man(options);
+  SlamSystem slam = make_slam();
+  double worst_m = 0;
+  for (std::uint64_t seq = 0; seq < 75; ++seq) {
+    const SlamOutput output = slam.process(*wall_and_walker(wall, man, seq));
+    worst_m = std::max(worst_m, position_error_m(output.result.T_world_camera, seq));
+  }
+  EXPECT_LT(worst_m, 0.2) << "he walked 0.9 m; weights without the distance follow him for 0.4";
+}
+
 TEST(SlamSystem, changes_are_the_whole_history_of_the_keyframes) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();

@@ -61,20 +61,28 @@ void weaken_others(const std::vector<Association>& associations, double factor,
   }
 }
 
-/// Witnesses carry the pose: what is on probation weighs at most a share of them, however much of it there is. Returns
-/// the factor of its weights.
+/// What a landmark says of where the camera is: its weight, less with the square of its distance.
+double influence_of(const vision::PoseObservation& observation, const Eigen::Vector3d& camera) {
+  constexpr double kNearest_m = 0.5;
+  const double distance_m = std::max(kNearest_m, (observation.p_world - camera).norm());
+  return observation.weight / (distance_m * distance_m);
+}
+
+/// Witnesses carry the pose: what is on probation has at most a share of their influence, however much of it there is.
+/// Few witnesses leave it more. Returns the factor of its weights.
 double weigh_probation(const std::vector<Association>& associations, const WitnessConfig& config,
-                       std::vector<vision::PoseObservation>& observations) {
+                       const Eigen::Vector3d& camera, std::vector<vision::PoseObservation>& observations) {
   int witnesses = 0;
   double of_witnesses = 0, of_others = 0;
   for (std::size_t i = 0; i < associations.size(); ++i) {
     witnesses += associations[i].witness ? 1 : 0;
-    (associations[i].witness ? of_witnesses : of_others) += observations[i].weight;
+    (associations[i].witness ? of_witnesses : of_others) += influence_of(observations[i], camera);
   }
-  if (!config.used || witnesses < kFewestWitnesses || of_others <= config.probation_share * of_witnesses) return 1;
-  const double factor = config.probation_share * of_witnesses / of_others;
-  weaken_others(associations, factor, observations);
-  return factor;
+  if (!config.used || witnesses < kFewestWitnesses) return 1;
+  const double most = of_witnesses * config.probation_share * (1 + static_cast<double>(config.enough) / witnesses);
+  if (of_others <= most) return 1;
+  weaken_others(associations, most / of_others, observations);
+  return most / of_others;
 }
 
 /// Where most of the witnesses contradict a pose, that by which clearly more of them agree, hardly anything else being
@@ -99,7 +107,8 @@ PoseGuess optimize(const Frame& frame, const std::vector<Association>& associati
   observations.reserve(associations.size());
   for (const Association& association : associations)
     observations.push_back(make_observation(frame, association, T_world_camera_initial.translation()));
-  double probation_weight = weigh_probation(associations, context.config.witness, observations);
+  double probation_weight =
+      weigh_probation(associations, context.config.witness, T_world_camera_initial.translation(), observations);
   vision::PoseOptimizerOptions options;
   if (context.config.techniques.adaptive_kernel) options.kernel = vision::RobustKernel::kAdaptive;
   options.rotation = context.rotation;
