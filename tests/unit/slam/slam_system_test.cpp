@@ -426,7 +426,7 @@ TEST(SlamSystem, low_static_probability_takes_the_weight_from_moving_objects) {
   EXPECT_LT(worst_m, 2e-3);
 }
 
-/// A wall that is too far for its depth to be measured, from second 1.5 on with a man in front of whom nobody knows.
+/// A wall that is too far for its depth to be measured, from second 1.5 on with an undetected man in front.
 std::unique_ptr<msg::FeatureFrame> wall_and_walker(const FeatureWorld& wall, const FeatureWorld& man,
                                                    std::uint64_t seq) {
   constexpr std::uint64_t kAppears = 45;
