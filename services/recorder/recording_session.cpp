@@ -299,6 +299,7 @@ void RecordingSession::watch_disk() {
 
 /// Next to the files, unless another file has the name.
 void RecordingSession::write_metadata(const std::string& text) const {
+  if (files_.metadata().empty()) return;
   std::string cause = "it is not of this recording";
   try {
     if (files_.owns_metadata()) return io::write_file(files_.metadata(), text);

@@ -21,7 +21,8 @@ class OutputFiles {
 
   std::filesystem::path file(std::size_t number) const;
   const std::filesystem::path& folder() const { return folder_; }
-  std::filesystem::path metadata() const { return folder_ / "metadata.yaml"; }
+  /// Of a recording of several files, or in a folder of its own. One named file needs none; the folder is the user's.
+  std::filesystem::path metadata() const { return numbered_ ? folder_ / "metadata.yaml" : std::filesystem::path(); }
   /// The files of an earlier recording under this name.
   std::vector<std::filesystem::path> existing() const;
   /// True when metadata.yaml does not exist, or is that of a rosbag2 recording and lists only files of this one.

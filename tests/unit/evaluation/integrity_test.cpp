@@ -103,6 +103,16 @@ TEST(Integrity, a_pose_that_returns_from_doubt_to_its_place_is_named_so) {
   EXPECT_EQ(integrity.returning, 10U);
 }
 
+TEST(Integrity, the_wait_of_a_start_is_no_needless_doubt) {
+  const Trajectory truth = walk();
+  std::vector<PublishedPose> published = perfect(truth, some_transform());
+  set_state(published, 0, 20, TrackingState::kDoubtful);
+  set_state(published, 40, 41, TrackingState::kDoubtful);
+  const Integrity integrity = judge_integrity(published, truth);
+  EXPECT_EQ(integrity.good, 40U);
+  EXPECT_EQ(integrity.needless, 1U);
+}
+
 TEST(Integrity, doubt_is_needless_where_the_error_is_below_a_centimetre) {
   const Trajectory truth = walk();
   std::vector<PublishedPose> published = perfect(truth, some_transform());

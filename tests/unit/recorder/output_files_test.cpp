@@ -31,7 +31,8 @@ TEST(OutputFiles, are_one_file_numbered_files_or_a_folder) {
   EXPECT_EQ(OutputFiles("a/run.mcap", true).file(2), "a/run_2.mcap");
   EXPECT_EQ(OutputFiles("a/run", false).file(0), "a/run/run_0.mcap");
   EXPECT_EQ(OutputFiles("a/run/", false).file(0), "a/run/run_0.mcap");
-  EXPECT_EQ(OutputFiles("run.mcap", false).metadata(), "./metadata.yaml");
+  EXPECT_EQ(OutputFiles("run.mcap", false).metadata(), "") << "the folder is the user's";
+  EXPECT_EQ(OutputFiles("run.mcap", true).metadata(), "./metadata.yaml");
   EXPECT_EQ(OutputFiles("run", false).metadata(), "run/metadata.yaml");
 }
 
@@ -56,9 +57,9 @@ TEST_F(OutputFolder, finds_a_free_name_beside) {
 }
 
 TEST_F(OutputFolder, leaves_the_metadata_of_others_alone) {
-  const OutputFiles files(in("run.mcap"), false);
+  const OutputFiles files(in("run.mcap"), true);
   EXPECT_TRUE(files.owns_metadata());
-  put("metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - run.mcap\n");
+  put("metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - run_0.mcap\n");
   EXPECT_TRUE(files.owns_metadata());
   put("metadata.yaml", "rosbag2_bagfile_information:\n  relative_file_paths:\n    - other_0.mcap\n");
   EXPECT_FALSE(files.owns_metadata());

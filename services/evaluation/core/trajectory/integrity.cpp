@@ -45,7 +45,9 @@ bool exceeds(const std::optional<SpanError>& error, const IntegrityLimits& limit
 void count_frames(const Published& published, const Errors& errors, const IntegrityLimits& limits,
                   Integrity& integrity) {
   integrity.frames = published.size();
+  bool started = false;
   for (std::size_t i = 0; i < published.size(); ++i) {
+    started = started || is_ok(published[i]);
     ++integrity.in_state[static_cast<std::size_t>(published[i].state)];
     if (!errors[i]) continue;
     ++integrity.judged;
@@ -53,7 +55,7 @@ void count_frames(const Published& published, const Errors& errors, const Integr
       ++integrity.dangerous;
       if (!is_ok(published[errors[i]->since])) ++integrity.returning;
     }
-    if (errors[i]->translation_m < limits.good_error_m) {
+    if (started && errors[i]->translation_m < limits.good_error_m) {
       ++integrity.good;
       if (published[i].state == msg::TrackingState::kDoubtful) ++integrity.needless;
     }

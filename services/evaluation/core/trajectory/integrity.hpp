@@ -94,7 +94,7 @@ struct Integrity {
   std::size_t judged = 0;     ///< whose error is known
   std::size_t dangerous = 0;  ///< `ok`, and the error exceeds a limit
   std::size_t returning = 0;  ///< of them: since a pose that was not `ok` itself, as when it returns to the right place
-  std::size_t good = 0;       ///< error below IntegrityLimits::good_error_m
+  std::size_t good = 0;       ///< error below IntegrityLimits::good_error_m, from the first `ok` on
   std::size_t needless = 0;   ///< of them: `doubtful`
   std::size_t episodes = 0;   ///< times in which the error exceeds a limit
   std::size_t unnoticed = 0;  ///< of them: `ok` to their end

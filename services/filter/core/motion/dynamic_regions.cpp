@@ -50,7 +50,7 @@ int vote_count(const std::vector<int>& per_cluster, std::size_t cluster) {
 /// Slow votes count where they are more than a few of the surface's features: one wrong match in a repeated texture
 /// brings its neighbours along.
 bool creeps(const MotionVotes& votes, std::size_t cluster, const GeometryConfig& config) {
-  constexpr int kLeastOfQuick = 10;  // one slow vote for so many quick ones
+  constexpr int kLeastOfQuick = 6;  // one slow vote for so many quick ones
   const int quick = vote_count(votes.quick.moving, cluster) + vote_count(votes.quick.resting, cluster);
   return votes.slow.cluster_creeps(cluster, config) && kLeastOfQuick * vote_count(votes.slow.moving, cluster) >= quick;
 }

@@ -88,7 +88,7 @@ TEST_F(DynamicRegionsTest, a_few_slow_votes_move_no_cluster_with_many_features_a
   slow_votes_ = votes_;
   const auto block = static_cast<std::size_t>(clusters_.label[static_cast<std::size_t>(kShape.cell_at(300, 200))]);
   slow_votes_.moving[block] = config_.min_creeping_features;
-  for (int i = 0; i < 10 * config_.min_creeping_features; ++i) vote({250 + i, 170 + i}, false);
+  for (int i = 0; i < 6 * config_.min_creeping_features; ++i) vote({250 + i, 170 + i}, false);
   EXPECT_EQ(judge().clusters, 1);
   vote({250, 170}, false);
   EXPECT_EQ(judge().clusters, 0);
