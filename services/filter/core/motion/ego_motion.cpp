@@ -51,6 +51,7 @@ std::vector<FeatureMatch> make_unique(std::vector<FeatureMatch> matches, std::si
   return matches;
 }
 
+constexpr double kFarM = 6, kFarSigmaPerM = 0.05, kLeastFarSigmaPx = 0.1;  // from 4 m on: 1 / z is known to 0.05 / m
 constexpr std::int64_t kNearAgeNs = 100'000'000;
 constexpr std::int64_t kOldAgeNs = 500'000'000;
 constexpr double kRefineWindowRad = 0.015;
@@ -66,7 +67,8 @@ std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& 
   const auto window_px = [&](const View& view) {
     return search_window_px(input.current.camera, msg::minus_ns(input.stamp_ns, view.stamp_ns), config);
   };
-  std::vector<FeatureMatch> matches = match_by_projection(near, input.current, T_world_camera, window_px(near), config);
+  std::vector<FeatureMatch> matches =
+      match_by_projection(near, input.current, T_world_camera, window_px(near), config, 0, Unmeasured::kFar);
   if (matches.size() < enough && previous.seq != near.seq) {
     const auto more = match_by_projection(previous, input.current, T_world_camera, window_px(previous), config);
     matches.insert(matches.end(), more.begin(), more.end());
@@ -153,6 +155,7 @@ KnownRotation rotation_since(const View& view, const EgoMotionInput& input) {
 PointSighting to_sighting(const FeatureMatch& match, const EgoMotionInput& input) {
   const msg::Feature& f = input.current.features[match.current];
   const double sigma_px = displacement_sigma_px(f.octave, input.current.camera);
+  if (match.far_sigma_px > 0) return {match.p_world, {f.u_px, f.v_px}, 0, std::hypot(sigma_px, match.far_sigma_px), -1};
   return {match.p_world, {f.u_px, f.v_px}, f.depth_m, sigma_px, input.cluster_of[match.current]};
 }
 
@@ -164,15 +167,18 @@ double search_window_px(const geometry::CameraModel& camera, std::int64_t age_ns
 
 std::vector<FeatureMatch> match_by_projection(const View& reference, const SearchableFeatures& current,
                                               const Eigen::Isometry3d& T_world_camera, double window_px,
-                                              const EgoMotionConfig& config, double reach_m) {
+                                              const EgoMotionConfig& config, double reach_m, Unmeasured unmeasured) {
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  const double reach_px_m = reach_m * current.camera.parameters().fx;
+  const double fx = current.camera.parameters().fx, reach_px_m = reach_m * fx;
+  const double moved_m = (T_world_camera.translation() - reference.T_world_camera.translation()).norm();
+  const double far_sigma_px = std::max(kLeastFarSigmaPx, kFarSigmaPerM * fx * moved_m);
   std::vector<FeatureMatch> matches;
   for (std::uint32_t i = 0; i < reference.features.size(); ++i) {
     const msg::Feature& feature = reference.features[i];
-    if (feature.depth_m <= 0) continue;
-    const Eigen::Vector3d p_world =
-        reference.T_world_camera * current.camera.unproject({feature.u_px, feature.v_px}, feature.depth_m);
+    const bool far = feature.depth_m <= 0;
+    if (far && unmeasured == Unmeasured::kLeftOut) continue;
+    const Eigen::Vector3d p_world = reference.T_world_camera * current.camera.unproject({feature.u_px, feature.v_px},
+                                                                                        far ? kFarM : feature.depth_m);
     const Eigen::Vector3d p_camera = T_camera_world * p_world;
     if (p_camera.z() < vision::kMinProjectionDepth_m) continue;
     const Eigen::Vector2d pixel = current.camera.project(p_camera);
@@ -182,7 +188,8 @@ std::vector<FeatureMatch> match_by_projection(const View& reference, const Searc
                                       feature.octave + 1};
     const Best best = nearest_descriptor(feature, current, window);
     if (best.hamming > config.max_hamming || best.hamming > config.max_ratio * best.second) continue;
-    matches.push_back({best.index, i, best.hamming, (feature.flags & msg::kFeatureRemoved) == 0, p_world});
+    const bool at_rest = (feature.flags & msg::kFeatureRemoved) == 0;
+    matches.push_back({best.index, i, best.hamming, at_rest, p_world, far ? far_sigma_px : 0});
   }
   return make_unique(std::move(matches), current.features.size());
 }
@@ -202,7 +209,9 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
       find_static_consensus(recent, camera, input.T_world_camera_predicted, config, rotation);
   if (consensus.image_share < config.min_image_share) return ego;
 
-  const auto all_near = to_sightings(near_matches, input);
+  std::vector<FeatureMatch> near_measured = near_matches;
+  std::erase_if(near_measured, [](const FeatureMatch& match) { return match.far_sigma_px > 0; });
+  const auto all_near = to_sightings(near_measured, input);
   const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters, geometry);
   std::vector<char> moves(none_moves);
   for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = first_votes.cluster_moves(i, geometry) ? 1 : 0;

@@ -43,6 +43,7 @@ struct FeatureMatch {
   int hamming = 0;
   bool reference_static = true;                       ///< the reference view did not judge it dynamic
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< m, from the reference view's depth and pose
+  double far_sigma_px = 0;  ///< > 0: it has no depth and counts as far; by so much that may be wrong in the image
 };
 
 /// The features of the current frame, ready to be searched.
@@ -55,12 +56,19 @@ struct SearchableFeatures {
 /// How far from the prediction features of a view of this age are searched for.
 double search_window_px(const geometry::CameraModel& camera, std::int64_t age_ns, const EgoMotionConfig& config);
 
-/// Projects the measured features of `reference` into the expected current pose and takes the nearest descriptor within
+/// What becomes of the features of a view that have no depth.
+enum class Unmeasured : std::uint8_t {
+  kLeftOut,
+  kFar,  ///< they are beyond the sensor's range: over 0.1 s they show how the camera has turned
+};
+
+/// Projects the features of `reference` into the expected current pose and takes the nearest descriptor within
 /// `window_px` (plus the image of `reach_m` at its depth), if it is near enough and clearly nearer than the second.
 /// Each current feature is matched at most once.
 std::vector<FeatureMatch> match_by_projection(const View& reference, const SearchableFeatures& current,
                                               const Eigen::Isometry3d& T_world_camera, double window_px,
-                                              const EgoMotionConfig& config, double reach_m = 0);
+                                              const EgoMotionConfig& config, double reach_m = 0,
+                                              Unmeasured unmeasured = Unmeasured::kLeftOut);
 
 /// Input of the estimate of the camera's motion.
 struct EgoMotionInput {
