@@ -59,6 +59,26 @@ constexpr std::int64_t kMinSlowAgeNs = 400'000'000;
 constexpr double kMinSlowImageShare = 0.4;               // if less agrees, the pose is wrong, not the surroundings
 constexpr double kSlowWindowRad = 0.03, kSlowMS = 0.05;  // the window grows by what such a mover covers
 
+/// Whether it has no depth because it is beyond the sensor's range, not because it is in the shadow of a person.
+bool is_far(const View& view, const msg::Feature& feature) {
+  constexpr float kNearM = 3;
+  constexpr int kAroundCells = 4;
+  if (feature.depth_m > 0) return false;
+  const GridShape& shape = view.grid.shape;
+  if (view.grid.depth_m.empty()) return true;
+  const int column = static_cast<int>(feature.u_px) / shape.cell_px,
+            row = static_cast<int>(feature.v_px) / shape.cell_px;
+  const int last_row = std::min(shape.rows - 1, row + kAroundCells);
+  const int last_column = std::min(shape.columns - 1, column + kAroundCells);
+  for (int r = std::max(0, row - kAroundCells); r <= last_row; ++r) {
+    for (int c = std::max(0, column - kAroundCells); c <= last_column; ++c) {
+      const float depth_m = view.grid.depth_m[static_cast<std::size_t>(shape.index(c, r))];
+      if (depth_m > 0 && depth_m < kNearM) return false;
+    }
+  }
+  return true;
+}
+
 /// Matches with the view 0.1 s ago and, when they are few, with the previous one.
 std::vector<FeatureMatch> match_recent(const EgoMotionInput& input, const View& near, const EgoMotionConfig& config) {
   const View& previous = input.views.newest();
@@ -176,7 +196,7 @@ std::vector<FeatureMatch> match_by_projection(const View& reference, const Searc
   for (std::uint32_t i = 0; i < reference.features.size(); ++i) {
     const msg::Feature& feature = reference.features[i];
     const bool far = feature.depth_m <= 0;
-    if (far && unmeasured == Unmeasured::kLeftOut) continue;
+    if (far && (unmeasured == Unmeasured::kLeftOut || !is_far(reference, feature))) continue;
     const Eigen::Vector3d p_world = reference.T_world_camera * current.camera.unproject({feature.u_px, feature.v_px},
                                                                                         far ? kFarM : feature.depth_m);
     const Eigen::Vector3d p_camera = T_camera_world * p_world;

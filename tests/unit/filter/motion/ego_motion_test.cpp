@@ -78,5 +78,20 @@ TEST_F(EgoMotionTest, what_has_no_depth_votes_on_no_surface) {
   EXPECT_LE(ego.votes.shifts.size(), 100U);
 }
 
+TEST_F(EgoMotionTest, no_depth_next_to_something_near_is_its_shadow) {
+  add(50, {60, 20, 500, 200}, 6.5, false, -1);
+  then_.grid.shape = {160, 120};
+  const vision::FeatureGrid grid(now_, 640, 480);
+  const auto matches = [&](float depth_m) {
+    then_.grid.depth_m.assign(160 * 120, depth_m);
+    return match_by_projection(then_, {now_, grid, camera_}, Eigen::Isometry3d::Identity(), 30, EgoMotionConfig{}, 0,
+                               Unmeasured::kFar)
+        .size();
+  };
+  EXPECT_EQ(matches(1.5F), 0U);
+  EXPECT_GE(matches(4), 40U);
+  EXPECT_GE(matches(0), 40U);
+}
+
 }  // namespace
 }  // namespace rtd::filter
