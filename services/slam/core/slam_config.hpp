@@ -99,7 +99,7 @@ struct WitnessConfig {
   bool used = true;
   double after_s = 0.5;
   double settle_s = 2;
-  double probation_share = 0.25;
+  double probation_share = 0.2;
   int enough = 30;
   double found_share = 0.4;
   double decisive_share = 0.2;

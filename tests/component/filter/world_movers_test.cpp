@@ -307,7 +307,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, WorldMoversIn,
                                            MoversScene{"synthetic:flicker?frames=200&seed=3"},
                                            MoversScene{"synthetic:sitting?frames=420"},
                                            MoversScene{"synthetic:box?frames=240", 1},
-                                           MoversScene{"synthetic:box?frames=300&seed=63", 1},
+                                           MoversScene{"synthetic:box?frames=300&seed=63", 2},
                                            MoversScene{"synthetic:approach?frames=200"}));
 
 }  // namespace

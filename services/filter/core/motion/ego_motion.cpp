@@ -221,6 +221,9 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const geometry::CameraModel& camera = input.current.camera;
   const View& near = input.views.of_age(input.stamp_ns, kNearAgeNs);
   const std::vector<FeatureMatch> near_matches = match_recent(input, near, config);
+  std::vector<FeatureMatch> near_measured = near_matches;
+  std::erase_if(near_measured, [](const FeatureMatch& match) { return match.far_sigma_px > 0; });
+  if (static_cast<int>(near_measured.size()) < config.min_inliers) return ego;
   const auto limit = static_cast<std::size_t>(config.max_observations);
   const std::vector<char> none_moves(input.clusters.cells.size(), 0);
   const auto recent = to_sightings(usable(near_matches, input, none_moves, limit), input);
@@ -229,8 +232,6 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
       find_static_consensus(recent, camera, input.T_world_camera_predicted, config, rotation);
   if (consensus.image_share < config.min_image_share) return ego;
 
-  std::vector<FeatureMatch> near_measured = near_matches;
-  std::erase_if(near_measured, [](const FeatureMatch& match) { return match.far_sigma_px > 0; });
   const auto all_near = to_sightings(near_measured, input);
   const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters, geometry);
   std::vector<char> moves(none_moves);

@@ -78,8 +78,9 @@ double weigh_probation(const std::vector<Association>& associations, const Witne
     witnesses += associations[i].witness ? 1 : 0;
     (associations[i].witness ? of_witnesses : of_others) += influence_of(observations[i], camera);
   }
+  constexpr double kManyWitnesses = 120;
   if (!config.used || witnesses < kFewestWitnesses) return 1;
-  const double most = of_witnesses * config.probation_share * (1 + static_cast<double>(config.enough) / witnesses);
+  const double most = of_witnesses * config.probation_share * (1 + kManyWitnesses / witnesses);
   if (of_others <= most) return 1;
   weaken_others(associations, most / of_others, observations);
   return most / of_others;
