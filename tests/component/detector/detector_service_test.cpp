@@ -308,7 +308,8 @@ TEST_F(DetectorServiceTest, keeps_to_the_rate_limit_in_realtime) {
 
 TEST_F(DetectorServiceTest, follows_the_load_step_of_a_filter_on_its_own_host_only) {
   start(service::Pace::kRealtime);
-  const auto answers_a_second = [&](double filters_host, double step) {
+  double took_s = 0;
+  const auto answers_in_a_second = [&](double filters_host, double step) {
     const std::size_t before = answer_box_.all().size();
     const std::int64_t began_ns = service::monotonic_ns();
     for (int i = 0; i < 100; ++i) {
@@ -316,15 +317,17 @@ TEST_F(DetectorServiceTest, follows_the_load_step_of_a_filter_on_its_own_host_on
       send_frame(i);
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
-    return static_cast<double>(answer_box_.all().size() - before) * 1e9 /
-           static_cast<double>(service::monotonic_ns() - began_ns);
+    took_s = 1e-9 * static_cast<double>(service::monotonic_ns() - began_ns);  // more on a busy host
+    return answer_box_.all().size() - before;
   };
   const double here = service::PeerClocks::this_host_id();
-  EXPECT_LE(answers_a_second(here, 4), 4 + 1);
-  EXPECT_LE(answers_a_second(here, 1e9), 4 + 1) << "more than there are: the last";
-  EXPECT_GE(answers_a_second(here, 0), 12);
-  EXPECT_GE(answers_a_second(here, std::nan("")), 12);
-  EXPECT_GE(answers_a_second(here + 1, 4), 12);
+  std::size_t answers = answers_in_a_second(here, 4);
+  EXPECT_LE(answers, 4 * took_s + 1);
+  answers = answers_in_a_second(here, 1e9);
+  EXPECT_LE(answers, 4 * took_s + 1) << "more than there are: the last";
+  EXPECT_GE(answers_in_a_second(here, 0), 15U);
+  EXPECT_GE(answers_in_a_second(here, std::nan("")), 15U);
+  EXPECT_GE(answers_in_a_second(here + 1, 4), 15U);
 }
 
 TEST_F(DetectorServiceTest, skips_and_counts_a_broken_jpeg) {

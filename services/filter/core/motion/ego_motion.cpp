@@ -59,13 +59,11 @@ constexpr std::int64_t kMinSlowAgeNs = 400'000'000;
 constexpr double kMinSlowImageShare = 0.4;               // if less agrees, the pose is wrong, not the surroundings
 constexpr double kSlowWindowRad = 0.03, kSlowMS = 0.05;  // the window grows by what such a mover covers
 
-/// Whether it has no depth because it is beyond the sensor's range, not because it is in the shadow of a person.
+/// Whether a feature without a depth is beyond the sensor's range, and not in the shadow of a person.
 bool is_far(const View& view, const msg::Feature& feature) {
   constexpr float kNearM = 3;
   constexpr int kAroundCells = 4;
-  if (feature.depth_m > 0) return false;
   const GridShape& shape = view.grid.shape;
-  if (view.grid.depth_m.empty()) return true;
   const int column = static_cast<int>(feature.u_px) / shape.cell_px,
             row = static_cast<int>(feature.v_px) / shape.cell_px;
   const int last_row = std::min(shape.rows - 1, row + kAroundCells);
