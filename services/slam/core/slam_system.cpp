@@ -188,7 +188,7 @@ TrackOutcome SlamSystem::begin_map(const FrameInput& input, SlamOutput& output) 
   requested_centre_ = outcome.tracked.reference;
   unknown_view_.reset();
   outcome.stage_ms[msg::kStageMapping] = to_ms(now_ns_() - start_ns);
-  record(outcome.tracked);
+  record(outcome);
   return outcome;
 }
 
@@ -211,11 +211,11 @@ TrackOutcome SlamSystem::track(const FrameInput& input, SlamOutput& output) {
     return outcome;
   }
   if (!msg::is_measured(outcome.state)) {
-    if (outcome.tracked.frame != nullptr) record(outcome.tracked);
+    if (outcome.tracked.frame != nullptr) record(outcome);
     return outcome;
   }
   evidence_ = {outcome.tracked.frame, outcome.tracked.T_world_camera, outcome.inliers, std::move(outcome.rejected)};
-  record(outcome.tracked);
+  record(outcome);
   deferred_.add(outcome.tracked, *outcome.map, {config_, now_ns_}, frames_);
   if (prior_) correct_frames(prior_->take_corrections(), frames_);
   if (!std::exchange(placed_, true)) {
@@ -253,7 +253,7 @@ void SlamSystem::leave_odometry() {
   meeting_.reset();
 }
 
-void SlamSystem::record(const TrackedFrame& tracked) {
+void SlamSystem::record(const TrackOutcome& outcome) {
   constexpr std::size_t kMaxFrames = 200'000;  // two hours at 30 Hz, 32 MB
   constexpr std::size_t kTidyEvery = 20'000;   // frames
   ++frames_tracked_;
@@ -261,7 +261,9 @@ void SlamSystem::record(const TrackedFrame& tracked) {
   if (frames_tracked_ % kTidyEvery == 0) {
     mapping_.forget_removed([this](const Map& map) { tie_to_living(frames_, map); });
   }
-  frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera});
+  const TrackedFrame& tracked = outcome.tracked;
+  frames_.push_back({tracked.frame->seq, tracked.frame->stamp_ns, tracked.reference, tracked.T_reference_camera,
+                     outcome.state == msg::TrackingState::kDoubtful});
 }
 
 /// The configured value wins; 0 when neither configuration nor frame says.

@@ -130,7 +130,7 @@ class SlamSystem {
   TrackOutcome track(const FrameInput& input, SlamOutput& output);
   void join(const TrackOutcome& outcome);
   void leave_odometry();
-  void record(const TrackedFrame& tracked);
+  void record(const TrackOutcome& outcome);
   double given_readout_s() const;
   ShutterMotion shutter_motion() const;
   void observe_sensor(const LocalMap& map, const TrackOutcome& outcome);

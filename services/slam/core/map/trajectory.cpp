@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/slam/core/map/trajectory.hpp"
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,6 +15,85 @@ namespace {
 
 constexpr std::size_t kLineLength = 256;
 constexpr double kUnknownDepth_per_m = 0.02;  ///< of the inverse: a metre at 7 m
+
+/// Of a hand or a robot with a camera, and of poses: m and rad alike.
+constexpr double kSigmaAcceleration = 2;
+constexpr double kSigmaDoubtful = 0.02;
+constexpr double kSigmaTrusted = 0.003;
+constexpr std::size_t kTrustedAround = 3;  ///< poses on each side
+constexpr double kMaxGap_s = 0.5;          ///< a motion is not known across a longer one
+
+/// What is added to the poses: way and turn in the world, a row each.
+using Corrections = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+
+/// Accelerations are linear in the corrections: change * corrections + measured, by kSigmaAcceleration.
+struct Accelerations {
+  Eigen::SparseMatrix<double> change;
+  Corrections measured;
+};
+
+double seconds(const StampedPose& from, const StampedPose& to) {
+  return 1e-9 * static_cast<double>(to.stamp_ns - from.stamp_ns);
+}
+
+Accelerations accelerations_of(std::span<const StampedPose> poses) {
+  const auto count = static_cast<Eigen::Index>(poses.size());
+  Accelerations result{Eigen::SparseMatrix<double>(count - 2, count), Corrections(count - 2, 6)};
+  const auto velocity = [&](std::size_t i, double duration_s) -> geometry::Vector6d {
+    return geometry::pose_difference(poses[i].T_world_body, poses[i + 1].T_world_body) / duration_s;
+  };
+  for (Eigen::Index row = 0; row < count - 2; ++row) {
+    const auto i = static_cast<std::size_t>(row);
+    const double before_s = seconds(poses[i], poses[i + 1]), after_s = seconds(poses[i + 1], poses[i + 2]);
+    const double scale = 2 / ((before_s + after_s) * kSigmaAcceleration);
+    result.change.insert(row, row) = scale / before_s;
+    result.change.insert(row, row + 1) = -scale / before_s - scale / after_s;
+    result.change.insert(row, row + 2) = scale / after_s;
+    result.measured.row(row) = scale * (velocity(i + 1, after_s) - velocity(i, before_s)).transpose();
+  }
+  return result;
+}
+
+/// Least squares with robust (Cauchy) weights of the doubtful poses: some follow a person, others are right.
+Corrections smooth(const Accelerations& accelerations, const std::vector<bool>& doubtful, std::size_t from) {
+  constexpr int kIterations = 8;
+  const Eigen::Index count = accelerations.change.cols();
+  const Eigen::SparseMatrix<double> of_change = accelerations.change.transpose() * accelerations.change;
+  const Corrections target = -(accelerations.change.transpose() * accelerations.measured);
+  Corrections corrections = Corrections::Zero(count, 6);
+  Eigen::SparseMatrix<double> of_poses(count, count);
+  of_poses.setIdentity();
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const bool in_doubt = doubtful[from + static_cast<std::size_t>(i)];
+      const double sigma2 = in_doubt ? kSigmaDoubtful * kSigmaDoubtful : kSigmaTrusted * kSigmaTrusted;
+      of_poses.coeffRef(i, i) = 1 / (sigma2 + (in_doubt ? corrections.row(i).squaredNorm() : 0));
+    }
+    solver.compute(of_change + of_poses);
+    corrections = solver.solve(target);
+  }
+  return corrections;
+}
+
+bool is_without_gap(std::span<const StampedPose> poses) {
+  return std::adjacent_find(poses.begin(), poses.end(), [](const StampedPose& one, const StampedPose& next) {
+           const double gap_s = seconds(one, next);
+           return gap_s <= 0 || gap_s > kMaxGap_s;
+         }) == poses.end();
+}
+
+/// `doubtful` tells of poses[i] at `from` + i.
+void mend(std::span<StampedPose> poses, const std::vector<bool>& doubtful, std::size_t from) {
+  const Corrections corrections = smooth(accelerations_of(poses), doubtful, from);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!doubtful[from + i]) continue;
+    const geometry::Vector6d correction = corrections.row(static_cast<Eigen::Index>(i)).transpose();
+    Eigen::Isometry3d& T_world_camera = poses[i].T_world_body;
+    T_world_camera.translation() += correction.head<3>();
+    T_world_camera.linear() = geometry::so3_exp(correction.tail<3>()) * T_world_camera.linear();
+  }
+}
 
 }  // namespace
 
@@ -49,13 +129,32 @@ void tie_to_living(std::vector<FrameRecord>& frames, const Map& map) {
   }
 }
 
+void mend_doubtful(std::vector<StampedPose>& poses, const std::vector<bool>& doubtful) {
+  std::size_t begin = 0;
+  while (begin < poses.size()) {
+    if (!doubtful[begin]) {
+      ++begin;
+      continue;
+    }
+    std::size_t end = begin, trusted = 0;
+    for (; end < poses.size() && trusted < kTrustedAround; ++end) trusted = doubtful[end] ? 0 : trusted + 1;
+    const std::size_t from = begin - std::min(begin, kTrustedAround);
+    const std::span<StampedPose> stretch = std::span(poses).subspan(from, end - from);
+    if (from < begin && trusted > 0 && is_without_gap(stretch)) mend(stretch, doubtful, from);
+    begin = end;
+  }
+}
+
 std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id) {
   std::vector<StampedPose> poses;
+  std::vector<bool> doubtful;
   poses.reserve(frames.size());
   for (const FrameRecord& frame : frames) {
     if (map.map_of(frame.reference) != id) continue;
     poses.push_back({frame.stamp_ns, map.T_world_keyframe(frame.reference) * frame.T_reference_camera});
+    doubtful.push_back(frame.doubtful);
   }
+  mend_doubtful(poses, doubtful);
   return poses;
 }
 

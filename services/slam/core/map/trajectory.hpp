@@ -19,6 +19,7 @@ struct FrameRecord {
   std::int64_t stamp_ns = 0;
   KeyframeId reference = kNoKeyframe;
   Eigen::Isometry3d T_reference_camera = Eigen::Isometry3d::Identity();
+  bool doubtful = false;  ///< as published: mend_doubtful() finds such poses again
 };
 
 /// A long run keeps all frames of its last hours and ever fewer of the earlier ones: when there are `limit`, every
@@ -47,8 +48,12 @@ struct MapPoint {
   float static_probability = 1;
 };
 
-/// Final poses of the recorded frames: T_world_reference (as corrected by now) * T_reference_camera.
-/// Those of one map: each has a world frame of its own.
+/// Finds the poses in doubt again that lie between poses that are not: those that need the least acceleration, and of
+/// the doubtful ones what fits into that. Others stay. docs/theory/tracking.md, "Mended from both ends".
+void mend_doubtful(std::vector<StampedPose>& poses, const std::vector<bool>& doubtful);
+
+/// Final poses of the recorded frames: T_world_reference (as corrected by now) * T_reference_camera; those that were
+/// in doubt are mended. Those of one map: each has its own world frame.
 std::vector<StampedPose> compose_trajectory(const Map& map, const std::vector<FrameRecord>& frames, MapId id = 0);
 /// Poses of the keyframes still in the map, oldest first.
 std::vector<StampedPose> keyframe_trajectory(const Map& map, MapId id = 0);

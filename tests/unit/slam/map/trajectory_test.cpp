@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cmath>
 #include <sstream>
 
 namespace rtd::slam {
@@ -31,6 +33,114 @@ TEST(ComposeTrajectory, follows_corrected_and_removed_keyframes) {
   const auto keyframes = keyframe_trajectory(map);
   ASSERT_EQ(keyframes.size(), 2U);
   EXPECT_EQ(keyframes[1].stamp_ns, 200);
+}
+
+/// A camera carried by hand for two seconds; from 0.7 to 1.3 s it follows a person who walks past: 0.4 m/s aside.
+class MendDoubtful : public ::testing::Test {
+ protected:
+  MendDoubtful() : doubtful_(kCount, false) {
+    for (std::size_t i = 0; i < kCount; ++i) truth_.push_back({static_cast<std::int64_t>(i) * kPeriod_ns, pose_at(i)});
+    poses_ = truth_;
+  }
+
+  static Eigen::Isometry3d pose_at(std::size_t i) {
+    const double t = 1e-9 * static_cast<double>(kPeriod_ns) * static_cast<double>(i);
+    Eigen::Isometry3d pose(Eigen::AngleAxisd(0.3 * std::sin(2 * t), Eigen::Vector3d::UnitY()));
+    pose.translation() = Eigen::Vector3d(0.2 * std::sin(2 * t), 0.1 * std::cos(1.5 * t), 0.3 * t);
+    return pose;
+  }
+
+  /// The last `right` of the doubtful poses are where the camera is.
+  void follow_a_person(std::size_t right = 0) {
+    for (std::size_t i = kFrom; i < kTo; ++i) {
+      doubtful_[i] = true;
+      const double away_s = 1e-9 * static_cast<double>(kPeriod_ns) * static_cast<double>(i - kFrom + 1);
+      if (i + right < kTo) poses_[i].T_world_body = Eigen::Translation3d(0.4 * away_s, 0, 0) * poses_[i].T_world_body;
+    }
+  }
+
+  double worst_m() const {
+    double worst = 0;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      worst = std::max(worst, (poses_[i].T_world_body.translation() - truth_[i].T_world_body.translation()).norm());
+    }
+    return worst;
+  }
+
+  static constexpr std::int64_t kPeriod_ns = 33'333'333;
+  static constexpr std::size_t kCount = 60, kFrom = 21, kTo = 39;
+  std::vector<StampedPose> truth_, poses_;
+  std::vector<bool> doubtful_;
+};
+
+TEST_F(MendDoubtful, brings_a_camera_back_that_followed_a_person) {
+  follow_a_person();
+  const auto before = poses_;
+  ASSERT_GT(worst_m(), 0.2);
+  mend_doubtful(poses_, doubtful_);
+  EXPECT_LT(worst_m(), 0.04);
+  for (std::size_t i = 0; i < kCount; ++i) {
+    if (!doubtful_[i]) {
+      EXPECT_EQ(poses_[i].T_world_body.matrix(), before[i].T_world_body.matrix()) << "frame " << i;
+    }
+    EXPECT_LT(geometry::rotation_angle_rad(poses_[i].T_world_body.inverse() * truth_[i].T_world_body), 0.02);
+  }
+}
+
+TEST_F(MendDoubtful, keeps_doubtful_poses_that_fit) {
+  follow_a_person(kTo - kFrom);
+  mend_doubtful(poses_, doubtful_);
+  EXPECT_LT(worst_m(), 0.002);
+}
+
+TEST_F(MendDoubtful, turns_back_what_was_turned) {
+  for (std::size_t i = kFrom; i < kTo; ++i) {
+    doubtful_[i] = true;
+    const double turned_rad = i < (kFrom + kTo) / 2 ? 0.2 : 0.0;
+    poses_[i].T_world_body.linear() =
+        Eigen::AngleAxisd(turned_rad, Eigen::Vector3d::UnitZ()) * poses_[i].T_world_body.linear();
+  }
+  mend_doubtful(poses_, doubtful_);
+  for (std::size_t i = kFrom; i < kTo; ++i) {
+    EXPECT_LT(geometry::rotation_angle_rad(poses_[i].T_world_body.inverse() * truth_[i].T_world_body), 0.05);
+  }
+}
+
+TEST_F(MendDoubtful, leaves_what_has_one_end_only_or_a_gap) {
+  follow_a_person();
+  const auto unchanged = [this] {
+    auto mended = poses_;
+    mend_doubtful(mended, doubtful_);
+    for (std::size_t i = 0; i < mended.size(); ++i) {
+      if (mended[i].T_world_body.matrix() != poses_[i].T_world_body.matrix()) return false;
+    }
+    return true;
+  };
+  EXPECT_FALSE(unchanged());
+  const std::vector<bool> around = doubtful_;
+  std::fill(doubtful_.begin(), doubtful_.begin() + kFrom, true);
+  EXPECT_TRUE(unchanged()) << "the start";
+  doubtful_ = around;
+  std::fill(doubtful_.begin() + kTo, doubtful_.end(), true);
+  EXPECT_TRUE(unchanged()) << "the end";
+  doubtful_ = around;
+  for (std::size_t i = kTo; i < kCount; ++i) poses_[i].stamp_ns += 1'000'000'000;
+  EXPECT_TRUE(unchanged()) << "a second without a pose";
+  for (std::size_t i = kTo; i < kCount; ++i) poses_[i].stamp_ns -= 3'000'000'000;
+  EXPECT_TRUE(unchanged()) << "time that goes back";
+}
+
+TEST(ComposeTrajectory, mends_what_was_in_doubt) {
+  Map map;
+  map.add_keyframe(std::make_shared<Frame>(), at_x(0), kNoKeyframe);
+  std::vector<FrameRecord> frames;
+  for (std::uint64_t i = 0; i < 9; ++i) {
+    const bool doubtful = i == 4;
+    frames.push_back({i, static_cast<std::int64_t>(i) * 33'000'000, 0, at_x(doubtful ? 0.3 : 0), doubtful});
+  }
+  EXPECT_NEAR(compose_trajectory(map, frames)[4].T_world_body.translation().x(), 0, 0.02);
+  frames[4].doubtful = false;
+  EXPECT_NEAR(compose_trajectory(map, frames)[4].T_world_body.translation().x(), 0.3, 1e-12);
 }
 
 TEST(TieToLiving, leaves_the_poses_where_they_are) {
