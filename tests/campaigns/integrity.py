@@ -4,7 +4,8 @@
 """Measures how far the state and the covariance of a pose can be trusted: docs/integrity.md.
 
 Usage: tests/campaigns/integrity.py --cache FOLDER [--renderer PROGRAM] [--kinds half,mix] [--seeds 1-4]
-                                    [--starts 0,15,30,45] [--set KEY=VALUE] [--jobs N] [--dry-run]
+                                    [--starts 0,15,30,45] [--model NETWORK] [--set KEY=VALUE] [--jobs N]
+                                    [--dry-run]
 
 The sequences are those of mover_set.py: a folder KIND_SEED in FOLDER. Every sequence runs from every first frame twice,
 as it is and with one fault that is provoked 0.8 s after the first frame: a person or a thing of no class before the
@@ -119,7 +120,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--starts", type=mover_set.numbers, default="0,15,30,45", help="first frames")
     parser.add_argument("--mode", default="rtd", help="of the filter")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
-    mover_set.add_imu(parser)
+    mover_set.add_inputs(parser)
     parser.add_argument("--program", type=pathlib.Path, default=stress.PROGRAM)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--dry-run", action="store_true", help="print the commands and run nothing")

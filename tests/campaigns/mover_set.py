@@ -5,7 +5,7 @@
 
 Usage: tests/campaigns/mover_set.py --cache FOLDER [--renderer PROGRAM] [--kinds half,mix] [--seeds 1-5]
                                     [--starts 0,20,45] [--modes rtd,geometry,semantic] [--set KEY=VALUE] [--imu SEED]
-                                    [--masks truth|NETWORK.onnx] [--jobs N]
+                                    [--model NETWORK] [--masks truth|NETWORK.onnx] [--jobs N]
 
 A sequence is a folder KIND_SEED in FOLDER: TUM's layout with true masks in mask/. One that is missing is rendered by
 `PROGRAM OUT KIND SEED FRAMES`. Choose settings on the odd seeds and judge them on the even ones.
@@ -56,7 +56,9 @@ def render(options, kind: str, seed: int) -> pathlib.Path:
 def command(options, folder: pathlib.Path, mode: str, start: int) -> list:
     task = [str(options.program), "--source", str(folder), "--mode", mode, "--first-frame", str(start)]
     if mode in perturbed_runs.WITH_DETECTOR:
-        task += ["--detector", "real", "--detections", str(options.cache / (folder.name + ".detections"))]
+        network = pathlib.Path(options.model).stem
+        task += ["--detector", "real", "--detector-model", options.model,
+                 "--detections", str(options.cache / f"{folder.name}.{network}.detections")]
         if options.masks:
             task += ["--masks", options.masks, "--remembered-masks", str(options.cache / (folder.name + ".masks"))]
     for setting in options.set:
@@ -66,13 +68,17 @@ def command(options, folder: pathlib.Path, mode: str, start: int) -> list:
     return task
 
 
-def add_imu(parser: argparse.ArgumentParser) -> None:
+def add_inputs(parser: argparse.ArgumentParser) -> None:
+    """What a run has next to the images: command() reads them."""
+    parser.add_argument("--model", default="yolov5-lite", help="the detector's network, as --model of rtd run")
+    parser.add_argument("--masks", help="people as pixels: truth, or the ONNX file of a network")
     parser.add_argument("--imu", type=int, metavar="SEED",
                         help="with an IMU made of the ground truth, its noise and biases by this seed")
 
 
 def settings_of(options) -> str:
-    return " ".join(options.set + ([f"imu={options.imu}"] if options.imu is not None else []))
+    return " ".join(options.set + [f"{name}={value}" for name, value in (
+        ("imu", options.imu), ("masks", options.masks), ("model", options.model)) if value is not None])
 
 
 def failed(result: dict, truth: dict) -> bool:
@@ -105,8 +111,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--starts", type=numbers, default="0,20,45", help="first frames")
     parser.add_argument("--modes", default="rtd,geometry,semantic")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="filter.* or slam.*")
-    add_imu(parser)
-    parser.add_argument("--masks", help="people as pixels: truth, or the ONNX file of a network")
+    add_inputs(parser)
     parser.add_argument("--program", type=pathlib.Path, default=stress.PROGRAM)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--out", type=pathlib.Path, default=stress.ROOT / "build/movers")
@@ -116,7 +121,7 @@ def parse() -> argparse.Namespace:
 def run_all(options, cases: list) -> list:
     """The results of (folder, mode, start), as they are on record or by new runs."""
     log = options.out / "movers.jsonl"
-    build = stress.build_of(options.program) + settings_of(options) + (options.masks or "")
+    build = stress.build_of(options.program) + settings_of(options)
     known = {}
     if log.exists():
         for result in map(json.loads, log.read_text().splitlines()):
