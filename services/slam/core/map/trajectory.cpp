@@ -83,7 +83,7 @@ bool is_without_gap(std::span<const StampedPose> poses) {
          }) == poses.end();
 }
 
-/// `doubtful` tells of poses[i] at `from` + i.
+/// `doubtful[from + i]` belongs to poses[i].
 void mend(std::span<StampedPose> poses, const std::vector<bool>& doubtful, std::size_t from) {
   const Corrections corrections = smooth(accelerations_of(poses), doubtful, from);
   for (std::size_t i = 0; i < poses.size(); ++i) {
