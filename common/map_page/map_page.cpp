@@ -92,7 +92,8 @@ std::string html(const Page& page, std::size_t most_bytes) {
   const double scale = fitting_scale(page, most_bytes - std::min(most_bytes, used));
   json layers = json::array();
   for (const Layer& layer : page.layers) layers.push_back(to_json(layer, share(layer, scale)));
-  const json scene = {{"title", page.title}, {"z_up", page.z_up}, {"facts", page.facts}, {"layers", layers}};
+  const json scene = {
+      {"title", page.title}, {"z_up", page.z_up}, {"facts", page.facts}, {"layers", layers}, {"links", page.links}};
   return filled(whole, "@SCENE@", scene.dump(-1, ' ', false, json::error_handler_t::replace));
 }
 

@@ -30,6 +30,7 @@ struct Page {
   bool z_up = false;                                       ///< else y is down, as in the frame of a first camera
   std::vector<std::pair<std::string, std::string>> facts;  ///< names and values
   std::vector<Layer> layers;
+  std::vector<std::pair<std::string, std::string>> links = {};  ///< names and places of other pages of the run
 };
 
 /// A map to look at in any browser without a network: one HTML file with everything inside. Layers of points are

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "common/io/atomic_file.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/service/command_line.hpp"
@@ -110,6 +111,8 @@ void print_next_steps(const std::string& out_dir, const std::string& page, const
 
 int run_both(const DemoOptions& options, const std::string& source) {
   process::require_executable("rtd-eval");  // a demo without its report has nothing to show
+  const std::string page = (fs::path(options.out_dir) / "demo.html").string();  // the runs' pages link to it
+  io::write_file(page, "<!doctype html><title>RTD-SLAM</title>Both runs are compared here once they have ended.\n");
   std::cerr << "rtd demo, 1 of 2: every point is used (--filter off)\n";
   const RunResult off = run_mode(options, source, "off");
   if (off.report != ReportState::kWritten || off.code == service::kInterrupted) return off.code;
@@ -117,7 +120,6 @@ int run_both(const DemoOptions& options, const std::string& source) {
   const RunResult with = run_mode(options, source, "rtd");
   if (with.report != ReportState::kWritten || with.code == service::kInterrupted) return with.code;
 
-  const std::string page = (fs::path(options.out_dir) / "demo.html").string();
   if (compare(options.out_dir, page) != 0) return service::kRunFailed;
   print_next_steps(options.out_dir, page, with.detector);
   return off.code == service::kOk ? with.code : off.code;

@@ -332,6 +332,9 @@ TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
                                    HasSubstr("static points (--filter rtd)"), HasSubstr("next:")));
   EXPECT_THAT(text_of(out_ + "/demo.html"), HasSubstr("\"kind\":\"comparison\""));
   for (const char* mode : {"off", "rtd"}) EXPECT_TRUE(fs::exists(out_ + "/" + mode + "/report.html")) << mode;
+  for (const char* file : {"/off/report.html", "/rtd/map.html"})
+    EXPECT_THAT(text_of(out_ + file), HasSubstr("../demo.html")) << file;
+  EXPECT_THAT(text_of(out_ + "/demo.html"), AllOf(HasSubstr("off/report.html"), HasSubstr("rtd/map.html")));
 }
 
 TEST_F(EndToEndTest, an_ablation_compares_variants_keeps_its_runs_and_refuses_unknown_techniques) {

@@ -64,5 +64,9 @@ test("a saved map as a page shows landmarks and keyframes", async () => {
 test("report.html of a run opens without a network", async () => {
   const page = await look("report.html", "report", () => document.readyState === "complete" && document.querySelectorAll("svg").length > 2);
   assert.match(await textOf(page, "body"), /90/);
+  for (const file of ["map.html", "report.html"]) {   // there and back
+    await Promise.all([page.waitForNavigation(), page.click(`a[href$="${file}"]`)]);
+    assert.ok(page.url().endsWith(file));
+  }
   await page.close();
 });

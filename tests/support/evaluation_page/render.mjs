@@ -27,5 +27,5 @@ const document = {
   createElement: (name) => new Element(name),
   createElementNS: (space, name) => new Element(name),
 };
-vm.runInNewContext(script, { document, atob });
+vm.runInNewContext(script, { document, atob, URL, location: new URL("file:///a run/report.html") });
 process.stdout.write(`<title>${escaped(document.title)}</title>${main}`);

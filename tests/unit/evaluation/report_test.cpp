@@ -237,6 +237,12 @@ TEST_F(ShownReport, has_every_section) {
   }
 }
 
+TEST_F(ShownReport, links_to_the_other_pages_of_the_run) {
+  record_.pages = {{"Report", "report.html"}, {"Map in 3D", "map.html"}, {"Both runs", "../demo.html"}};
+  EXPECT_THAT(shown(), AllOf(HasSubstr("<a href=\"file:///a%20run/map.html\">Map in 3D</a>"),
+                             HasSubstr("<a href=\"file:///demo.html\">Both runs</a>"), Not(HasSubstr("report.html"))));
+}
+
 TEST_F(ShownReport, says_when_and_why_the_pose_was_doubtful) {
   EXPECT_THAT(shown(), Not(HasSubstr("Why the pose was doubtful")));
   for (std::size_t i = 10; i < 13; ++i) record_.frames[i].tracking.state = msg::TrackingState::kDoubtful;

@@ -7,10 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "common/io/atomic_file.hpp"
 #include "common/run_record/run_record.hpp"
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/core/report/report.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
+#include "tests/unit/evaluation/page_data.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
@@ -220,6 +222,21 @@ TEST_F(ReportCommand, compares_runs_on_one_page) {
   EXPECT_EQ(run_compare({{folder, folder}, {"first"}, page}, out_, err_), 0) << err_.str();
   EXPECT_THAT(out_.str(), testing::AllOf(HasSubstr("  first "), HasSubstr("  " + folder), HasSubstr("79.7 %")));
   EXPECT_THAT(read_text(page), testing::AllOf(HasSubstr("\"label\":\"first\""), HasSubstr("\"kind\":\"comparison\"")));
+}
+
+TEST_F(ReportCommand, pages_link_to_those_that_exist) {
+  using Pages = std::vector<std::pair<std::string, std::string>>;
+  const std::string folder = folder_.file("out/run"), page = folder_.file("out/demo.html");
+  std::filesystem::create_directories(folder);
+  run_record::write_run_json(run_, folder + "/run.json");
+  const Pages own = {{"Report", "report.html"}, {"Map in 3D", "map.html"}};
+  EXPECT_EQ(load_run(folder).pages, own);
+  io::write_file(page, "");
+  EXPECT_EQ(load_run(folder).pages.back(), Pages::value_type("Both runs", "../demo.html"));
+  io::write_file(folder + "/map.html", "");
+  EXPECT_EQ(run_compare({{folder}, {}, page}, out_, err_), 0) << err_.str();
+  const auto linked = testing_support::page_data(read_text(page))["runs"][0]["pages"].get<Pages>();
+  EXPECT_EQ(linked, (Pages{{"Map in 3D", "run/map.html"}, {"Both runs", "demo.html"}}));
 }
 
 }  // namespace

@@ -78,6 +78,11 @@ TEST(MapPage, points_that_are_not_finite_are_left_out) {
   EXPECT_EQ(scene["layers"][1]["points"], "");
 }
 
+TEST(MapPage, knows_the_other_pages_of_its_run) {
+  EXPECT_EQ(scene_of(html({.links = {{"Report", "report.html"}}}))["links"],
+            json::parse(R"([["Report", "report.html"]])"));
+}
+
 TEST(MapPage, a_title_cannot_end_the_script) {
   const std::string page = html({.title = "</script><script>alert(1)</script>"});
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));

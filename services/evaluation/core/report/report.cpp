@@ -229,7 +229,7 @@ std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most) 
 }
 
 map_page::Page map_page_of(const Run& run, const RunSummary& summary) {
-  map_page::Page page{.title = run.source, .z_up = run.z_up};
+  map_page::Page page{.title = run.source, .z_up = run.z_up, .links = run.pages};
   page.facts = {{"Frames", summary.frames.text()}, {"Keyframes", std::to_string(summary.keyframes)}};
   if (summary.final_trajectory && summary.final_trajectory->ate.error_m.count > 0)
     page.facts.emplace_back("ATE", length_text(summary.final_trajectory->ate.error_m.rmse));
@@ -248,6 +248,8 @@ Run load_run(const std::string& folder) {
   run.groundtruth_path = existing(folder + "/groundtruth.txt");
   run.trajectory_path = existing(folder + "/trajectory.txt");
   run.static_map_path = existing(folder + "/static_map.ply");
+  run.pages = {{"Report", "report.html"}, {"Map in 3D", "map.html"}};
+  if (!existing(folder + "/../demo.html").empty()) run.pages.emplace_back("Both runs", "../demo.html");
   if (const auto map = io::try_open(run.static_map_path))
     run.static_map_points = geometry::ply_vertices(*map).value_or(0);
   if (const auto landmarks = io::try_open(folder + "/map.ply"))

@@ -177,6 +177,7 @@ Json run_data(const std::string& label, const Run& run, const RunSummary& summar
   const auto& final = summary.final_trajectory;
   const auto& online = summary.online_trajectory;
   return {{"label", label},
+          {"pages", run.pages},
           {"report", report_json(run, summary)},
           {"frames", summary.frames.text()},
           {"why_no_error", why_no_error(summary)},

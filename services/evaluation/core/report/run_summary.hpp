@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/run_record/run_record.hpp"
@@ -23,8 +24,9 @@ struct Run : run_record::RunRecord {
   std::string groundtruth_path;  ///< TUM format; empty = none
   std::string static_map_path;   ///< static_map.ply that dense wrote; empty = none
   std::uint64_t static_map_points = 0;
-  std::vector<Eigen::Vector3d> landmarks_m;  ///< of map.ply, thinned; empty = none
-  std::optional<RunRemoval> removal;         ///< of sources that know what moves
+  std::vector<std::pair<std::string, std::string>> pages;  ///< that link to one another: names, and places from here
+  std::vector<Eigen::Vector3d> landmarks_m;                ///< of map.ply, thinned; empty = none
+  std::optional<RunRemoval> removal;                       ///< of sources that know what moves
 };
 
 /// Times in ms; NaN when nothing was measured.
