@@ -17,6 +17,7 @@ namespace rtd::map_page {
 namespace {
 
 using nlohmann::json;
+using run_record::packed;
 
 static_assert(std::endian::native == std::endian::little, "pages read little-endian numbers");
 
@@ -37,12 +38,6 @@ double fitting_scale(const Page& page, std::size_t room) {
   for (const Layer& layer : page.layers) (layer.line ? lines : points) += bytes_of(layer, layer.points_m.size());
   if (points == 0 || lines + points <= room) return 1;
   return static_cast<double>(room - std::min(room, lines)) / static_cast<double>(points);
-}
-
-template <class T>
-std::string packed(const std::vector<T>& values) {
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(values.data());
-  return run_record::to_base64({bytes, bytes + values.size() * sizeof(T)});
 }
 
 json to_json(const Layer& layer, std::size_t wanted) {

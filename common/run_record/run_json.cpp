@@ -98,6 +98,16 @@ std::vector<JudgedFeature> unpack(const std::string& text) {
   return features;
 }
 
+static_assert(sizeof(SeenPoint) == 5 * sizeof(float), "points are stored as five float32");
+
+/// None in the files of earlier versions.
+std::vector<SeenPoint> read_points(const Json& sample) {
+  const std::vector<std::uint8_t> bytes = from_base64(sample.value("points", std::string()));
+  std::vector<SeenPoint> points(bytes.size() / sizeof(SeenPoint));
+  if (!points.empty()) std::memcpy(points.data(), bytes.data(), points.size() * sizeof(SeenPoint));
+  return points;
+}
+
 Json processes_json(const std::map<std::string, ProcessUsage>& processes) {
   Json json = Json::object();
   for (const auto& [name, usage] : processes) {
@@ -144,7 +154,10 @@ Json record_json(const RunRecord& record) {
                               {"round_trip_ms", to_value(clock.round_trip_ms)}});
   }
   for (const SampleFrame& sample : record.samples) {
-    Json entry = {{"seq", sample.seq}, {"jpeg", to_base64(sample.jpeg)}, {"features", pack(sample.features)}};
+    Json entry = {{"seq", sample.seq},
+                  {"jpeg", to_base64(sample.jpeg)},
+                  {"features", pack(sample.features)},
+                  {"points", packed(sample.points)}};
     if (!sample.masks.empty()) entry["masks"] = masks_json(sample.masks);
     json["samples"].push_back(std::move(entry));
   }
@@ -188,7 +201,7 @@ void read_lists(const Json& json, RunRecord& record) {
   }
   for (const Json& sample : json.at("samples")) {
     record.samples.push_back({sample.at("seq"), from_base64(sample.at("jpeg").get_ref<const std::string&>()),
-                              unpack(sample.at("features")), read_masks(sample)});
+                              unpack(sample.at("features")), read_masks(sample), read_points(sample)});
   }
   for (const Json& frame : json.at("judged_frames"))
     record.judged_frames.push_back({frame.at("stamp_ns"), unpack(frame.at("features"))});

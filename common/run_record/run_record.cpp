@@ -22,6 +22,18 @@ std::vector<JudgedFeature> judged(std::span<const msg::Feature> features) {
   return result;
 }
 
+std::vector<SeenPoint> seen(const msg::FeatureFrame& frame) {
+  const auto [fx, fy, cx, cy] = frame.intrinsics;
+  std::vector<SeenPoint> points;
+  for (const msg::Feature& f : msg::used_part(frame, frame.features)) {
+    if ((f.flags & msg::kFeatureRemoved) != 0 || !(f.depth_m > 0)) continue;
+    const auto x_m = static_cast<float>((f.u_px - cx) / fx * f.depth_m);
+    const auto y_m = static_cast<float>((f.v_px - cy) / fy * f.depth_m);
+    points.push_back({f.u_raw_px, f.v_raw_px, {x_m, y_m, f.depth_m}});
+  }
+  return points;
+}
+
 double FrameUse::coverage() const {
   if (given == 0) return std::numeric_limits<double>::quiet_NaN();
   return static_cast<double>(with_pose) / static_cast<double>(given);

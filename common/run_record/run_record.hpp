@@ -58,12 +58,20 @@ struct JudgedFrame {
   std::vector<JudgedFeature> features;
 };
 
+/// A feature with depth that the filter kept: where it is in the camera's own image, and in the camera's frame.
+struct SeenPoint {
+  float u_raw_px = 0, v_raw_px = 0;
+  std::array<float, 3> p_camera_m{};
+};
+std::vector<SeenPoint> seen(const msg::FeatureFrame& frame);
+
 /// One frame kept for the report: its image and the features drawn on it.
 struct SampleFrame {
   std::uint64_t seq = 0;
   std::vector<std::uint8_t> jpeg;
   std::vector<JudgedFeature> features;
   vision::PersonMasks masks;  ///< the pixels of people; empty where no masks were sent
+  std::vector<SeenPoint> points = {};
 };
 
 struct ProcessUsage {
@@ -131,6 +139,13 @@ bool is_synthetic(const std::string& source_uri);
 
 /// RFC 4648 base64.
 std::string to_base64(const std::vector<std::uint8_t>& bytes);
+
+/// Values as they lie in memory, in base64.
+template <class T>
+std::string packed(const std::vector<T>& values) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(values.data());
+  return to_base64({bytes, bytes + values.size() * sizeof(T)});
+}
 
 /// The bytes of a base64 text with padding. Throws std::invalid_argument when it is not one.
 std::vector<std::uint8_t> from_base64(std::string_view text);

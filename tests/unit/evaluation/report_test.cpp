@@ -343,6 +343,18 @@ TEST_F(ShownReport, is_not_spoilt_by_numbers_that_are_not_finite) {
                              Not(HasSubstr("null"))));
 }
 
+TEST_F(Report, map_has_static_points_in_colour_where_there_is_no_room) {
+  record_.samples[0].points = {{10, 12, {0, 0, 2}}, {64, 0, {0, 0, 2}}};  // the second beyond the image
+  const RunSummary summary = summarize_run(record_);
+  const auto layers = map_page_of(record_, summary).layers;
+  EXPECT_EQ(layers[0].name, "Static points");
+  ASSERT_EQ(layers[0].points_m.size(), 1U);
+  EXPECT_EQ(layers[0].colors[0], (map_page::Color{90, 90, 90}));
+  const Eigen::Vector3d expected_m = summary.estimate.at(3).T_world_body * Eigen::Vector3d(0, 0, 2);
+  EXPECT_LT((layers[0].points_m[0].cast<double>() - expected_m).norm(), 1e-6);
+  EXPECT_FALSE(layers[1].shown) << layers[1].name;
+}
+
 TEST_F(Report, files_are_written_and_parse) {
   const RunSummary summary = write_report(record_, folder_.path());
   EXPECT_EQ(summary.frames.with_pose, 94U);

@@ -142,6 +142,17 @@ TEST_F(RunJson, keeps_masks_of_people_and_refuses_those_of_another_size) {
   EXPECT_THAT(why_unreadable(json.dump()), HasSubstr("masks of another size"));
 }
 
+TEST_F(RunJson, keeps_points_and_reads_files_without_them) {
+  run_.samples[1].points = {{1, 2, {3, 4, 5}}};
+  const run_record::RunRecord read = written_and_read();
+  EXPECT_TRUE(read.samples.at(0).points.empty());
+  ASSERT_EQ(read.samples.at(1).points.size(), 1U);
+  EXPECT_EQ(read.samples.at(1).points[0].p_camera_m[2], 5);
+  nlohmann::json json = nlohmann::json::parse(read_text(folder_.file("run.json")));
+  json["samples"][1].erase("points");
+  EXPECT_THAT(why_unreadable(json.dump()), "it can be read");
+}
+
 TEST_F(RunJson, takes_what_is_not_finite_for_unknown) {
   const run_record::RunRecord read = written_and_read();
   EXPECT_TRUE(std::isnan(read.frames[2].tracking.T_world_camera.translation_m[1]));

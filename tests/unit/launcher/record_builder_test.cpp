@@ -307,6 +307,21 @@ TEST(sample_keeper, spreads_the_wanted_number_over_a_known_length) {
   EXPECT_EQ(samples[3].features.size(), 3U);
 }
 
+TEST(sample_keeper, keeps_where_the_static_points_are) {
+  SampleKeeper keeper(1, 1);
+  auto features = *features_of(0);
+  features.intrinsics = {500, 400, 320, 240};
+  for (std::size_t i = 0; i < 3; ++i) features.features[i] = {.u_px = 420, .v_px = 140, .u_raw_px = 9, .depth_m = 2};
+  features.features[1].flags = msg::kFeatureRemoved;
+  features.features[2].depth_m = 0;
+  keeper.add_image(0, {1});
+  keeper.add_features(0, features);
+  const std::vector<run_record::SeenPoint> points = keeper.samples().at(0).points;
+  ASSERT_EQ(points.size(), 1U);
+  EXPECT_EQ(points[0].u_raw_px, 9);
+  EXPECT_THAT(points[0].p_camera_m, ElementsAre(0.4F, -0.5F, 2));
+}
+
 TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
   SampleKeeper keeper(12);
   const auto samples = run_samples(keeper, 5000);

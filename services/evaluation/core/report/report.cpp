@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <stdexcept>
 
 #include "common/geometry/ply.hpp"
@@ -21,23 +19,6 @@
 
 namespace rtd::eval {
 namespace {
-
-using map_page::Layer;
-
-constexpr map_page::Color kLandmark{79, 156, 249}, kPath{63, 208, 127}, kTruth{180, 142, 247};
-
-Layer line(const std::string& name, map_page::Color color, const Trajectory& poses, const Eigen::Isometry3d& T_map) {
-  Layer layer{.name = name, .line = true, .color = color};
-  for (const geometry::StampedPose& pose : poses)
-    layer.points_m.push_back((T_map * pose.T_world_body.translation()).cast<float>());
-  return layer;
-}
-
-/// Where the ground truth lies in the map; empty where nothing was aligned.
-std::optional<Eigen::Isometry3d> truth_in_map(const RunSummary& summary) {
-  if (!summary.final_trajectory || summary.final_trajectory->ate.error_m.count == 0) return std::nullopt;
-  return summary.final_trajectory->ate.alignment.T_groundtruth_estimate.inverse();
-}
 
 constexpr std::size_t kJudgedWhenInterrupted = 50;
 constexpr std::size_t kDrawnLandmarks = 8000;
@@ -182,66 +163,6 @@ Json removal_json(const Run& run) {
 }
 
 }  // namespace
-
-Layer read_static_map(std::istream& in) {
-  constexpr std::size_t kVertexBytes = 19, kColorAt = 12;  // x y z, red green blue, weight
-  Layer layer{.name = "Room"};
-  const std::string wanted =
-      "property float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-      "property uchar green\nproperty uchar blue\nproperty float weight\n";
-  std::string properties, text, format;
-  std::size_t count = 0;
-  while (io::get_line(in, text) && text != "end_header") {
-    if (text.starts_with("property ")) properties += text + '\n';
-    if (text.starts_with("format ")) format = text;
-    if (text.starts_with("element vertex ")) count = std::strtoull(text.c_str() + 15, nullptr, 10);
-  }
-  if (properties != wanted || format != "format binary_little_endian 1.0") return layer;
-  std::array<char, kVertexBytes> vertex{};
-  for (std::size_t i = 0; i < count && in.read(vertex.data(), vertex.size()); ++i) {
-    std::memcpy(layer.points_m.emplace_back().data(), vertex.data(), kColorAt);
-    std::memcpy(layer.colors.emplace_back().data(), vertex.data() + kColorAt, 3);
-  }
-  return layer;
-}
-
-std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most) {
-  std::string line;
-  std::size_t count = 0;
-  bool is_text = false, in_header = true;
-  while (in_header && io::get_line(in, line)) {
-    std::istringstream words(line);
-    std::string key, what;
-    words >> key >> what;
-    if (key == "format") is_text = what == "ascii";
-    if (key == "element" && what == "vertex") words >> count;
-    in_header = key != "end_header";
-  }
-  std::vector<Eigen::Vector3d> points_m;
-  if (in_header || !is_text) return points_m;
-  const std::size_t stride = count / std::max<std::size_t>(1, most) + 1;
-  for (std::size_t i = 0; i < count && io::get_line(in, line); ++i) {
-    Eigen::Vector3d p;
-    if (i % stride != 0 || !(std::istringstream(line) >> p.x() >> p.y() >> p.z())) continue;
-    if (p.allFinite()) points_m.push_back(p);
-  }
-  return points_m;
-}
-
-map_page::Page map_page_of(const Run& run, const RunSummary& summary) {
-  map_page::Page page{.title = run.source, .z_up = run.z_up, .links = run.pages};
-  page.facts = {{"Frames", summary.frames.text()}, {"Keyframes", std::to_string(summary.keyframes)}};
-  if (summary.final_trajectory && summary.final_trajectory->ate.error_m.count > 0)
-    page.facts.emplace_back("ATE", length_text(summary.final_trajectory->ate.error_m.rmse));
-  if (const auto file = io::try_open(run.static_map_path)) page.layers.push_back(read_static_map(*file));
-  Layer landmarks{.name = "Landmarks", .shown = page.layers.empty(), .color = kLandmark};
-  for (const Eigen::Vector3d& landmark : run.landmarks_m) landmarks.points_m.push_back(landmark.cast<float>());
-  page.layers.push_back(std::move(landmarks));
-  page.layers.push_back(line("Path of the camera", kPath, summary.estimate, Eigen::Isometry3d::Identity()));
-  if (const auto T_map_truth = truth_in_map(summary))
-    page.layers.push_back(line("Ground truth", kTruth, summary.groundtruth, *T_map_truth));
-  return page;
-}
 
 Run load_run(const std::string& folder) {
   Run run{run_record::read_run_json(folder + "/run.json")};

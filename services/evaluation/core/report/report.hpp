@@ -21,7 +21,8 @@ map_page::Layer read_static_map(std::istream& in);
 /// spread. Empty for any other file.
 std::vector<Eigen::Vector3d> read_landmarks(std::istream& in, std::size_t most);
 
-/// What a run left, to look at in a browser: the dense map if there is one, landmarks, path and ground truth.
+/// What a run left, to look at in a browser: the dense map or, without one, static points in
+/// colour, landmarks, path and ground truth.
 map_page::Page map_page_of(const Run& run, const RunSummary& summary);
 
 /// Reads run.json and finds the other files of the run in `folder`. Throws RunFileError.

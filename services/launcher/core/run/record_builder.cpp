@@ -334,6 +334,7 @@ void SampleKeeper::add_features(std::uint64_t seq, const msg::FeatureFrame& feat
   sample.seq = seq;
   sample.features =
       run_record::judged({features.features.data(), std::min<std::size_t>(features.count, msg::kMaxFeatures)});
+  sample.points = run_record::seen(features);
   thin_out();
 }
 
