@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Prints what a page of the evaluation shows: node render.mjs PAGE.html. A document of a few lines takes the place of a
+// Prints what a page of the evaluation shows: node render.mjs PAGE.html [WIDTH]. A document of a few lines takes the place of a
 // browser: it knows only what the page's script uses, and markup in a text stays text, as in a browser.
 
 import { readFileSync } from "node:fs";
@@ -10,12 +10,13 @@ import vm from "node:vm";
 const escaped = (text) => String(text).replace(/[&<>"']/g, (letter) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "'": "&#39;" })[letter]);
 
 class Element {
-  constructor(name) { Object.assign(this, { name, attributes: [], children: [] }); }
-  setAttribute(key, value) { this.attributes.push(` ${key}="${escaped(value)}"`); }
+  constructor(name) { Object.assign(this, { name, attributes: {}, children: [] }); }
+  setAttribute(key, value) { this.attributes[key] = String(value); }
+  getAttribute(key) { return this.attributes[key]; }
   append(...children) { this.children.push(...children); }
   replaceChildren(...children) { this.children = children; }
   toString() {
-    return `<${this.name}${this.attributes.join("")}>${this.children.map((child) => child instanceof Element ? child : escaped(child)).join("")}</${this.name}>`;
+    return `<${this.name}${Object.entries(this.attributes).map(([key, value]) => ` ${key}="${escaped(value)}"`).join("")}>${this.children.map((child) => child instanceof Element ? child : escaped(child)).join("")}</${this.name}>`;
   }
 }
 
@@ -27,5 +28,5 @@ const document = {
   createElement: (name) => new Element(name),
   createElementNS: (space, name) => new Element(name),
 };
-vm.runInNewContext(script, { document, atob, URL, location: new URL("file:///a run/report.html") });
+vm.runInNewContext(script, { document, atob, URL, innerWidth: Number(process.argv[3] ?? 1280), location: new URL("file:///a run/report.html") });
 process.stdout.write(`<title>${escaped(document.title)}</title>${main}`);

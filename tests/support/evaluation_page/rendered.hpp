@@ -10,6 +10,7 @@ namespace rtd::eval::testing_support {
 bool has_node();
 
 /// What a page of the evaluation shows: the markup that its script makes. A broken script fails the test.
-std::string rendered(const std::string& html, const std::string& scratch_file);
+/// width_px: of the window.
+std::string rendered(const std::string& html, const std::string& scratch_file, int width_px = 1280);
 
 }  // namespace rtd::eval::testing_support

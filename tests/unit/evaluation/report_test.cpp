@@ -243,6 +243,24 @@ TEST_F(ShownReport, links_to_the_other_pages_of_the_run) {
                              HasSubstr("<a href=\"file:///demo.html\">Both runs</a>"), Not(HasSubstr("report.html"))));
 }
 
+TEST_F(ShownReport, draws_for_a_phone_what_fits_its_width) {
+  record_.landmarks_m = {{0, 0, 0}, {1, 0.1, 4}, {2, 0, 8}};
+  const std::string html = testing_support::rendered(page(), folder_.file("page.html"), 390);
+  const std::regex size("viewBox=\"0 (-?\\d+) (\\d+) ");
+  std::size_t drawings = 0, with_two_rows = 0;
+  for (std::sregex_iterator found(html.begin(), html.end(), size), end; found != end; ++found, ++drawings) {
+    EXPECT_LE(std::stoi((*found)[2]), 440);
+    with_two_rows += (*found)[1] == "-16" ? 1 : 0;
+  }
+  EXPECT_GE(drawings, 6U);
+  EXPECT_EQ(with_two_rows, 1U) << "the legend of the features";
+}
+
+TEST_F(ShownReport, lists_no_drops_that_did_not_happen) {
+  record_.drops["filter.dropped"] = 0;
+  EXPECT_THAT(shown(), AllOf(HasSubstr("camera.late: 1"), Not(HasSubstr("filter.dropped"))));
+}
+
 TEST_F(ShownReport, says_when_and_why_the_pose_was_doubtful) {
   EXPECT_THAT(shown(), Not(HasSubstr("Why the pose was doubtful")));
   for (std::size_t i = 10; i < 13; ++i) record_.frames[i].tracking.state = msg::TrackingState::kDoubtful;
