@@ -10,7 +10,7 @@ import { OrbitControls } from "/three/examples/jsm/controls/OrbitControls.js";
 export const kModes = ["follow", "above", "free"];
 const kBehind_m = 2.4;
 const kOver_m = 1.3;
-const kAhead_m = 0.8;
+const kAhead_m = 2.4;
 const kSmoothing_s = 0.25;      // time constant of the camera's way
 const kSettled_m = 0.002;
 const kMargin = 1.25;           // of the view around what must fit

@@ -224,6 +224,21 @@ for (const [name, view] of Object.entries({ dark: {}, light: { theme: "light" },
   });
 }
 
+test("following, the robot is in the lower third of the view: what it goes to fills the rest", async () => {
+  await open();
+  await waitForMap(page, 5000);
+  Object.assign(server.robots[0], { paused: true, time_s: 12 });
+  server.send(server.robots[0].tracking());
+  await waitFor(page, () => rtdViewer.fps === 0);
+  await page.click("#share-open");
+  const fields = new URLSearchParams(new URL(await page.$eval("#share-link", ({ value }) => value)).hash.slice(1));
+  const [eye, target] = ["eye", "target"].map((name) => fields.get(name).split(",").map(Number));
+  const [x, y, z] = await page.evaluate(() => rtdViewer.state().robots[0].tracking.pose);
+  const down = (point) => Math.atan2(eye[1] - point[1], Math.hypot(point[0] - eye[0], point[2] - eye[2]));
+  const below = Math.tan(down([x, -y, -z]) - down(target)) / Math.tan(27.5 * Math.PI / 180);   // of the middle; 1: at the edge
+  assert.ok(below > 1 / 3 && below < 2 / 3, `${below.toFixed(2)} of half the height below the middle`);
+});
+
 for (const [points, keyframes] of [[5000, 60], [200_000, 1000]]) {
   test(`frames per second at ${points} points, 800 x 600`, async (context) => {
     await open({ points, keyframes }, { width: 800, height: 600 });
