@@ -27,7 +27,7 @@ import { SystemPanel } from "./system_panel.js";
 import { exposeHooks } from "./hooks.js";
 import { ShareDialog } from "./share_dialog.js";
 import { parseHash } from "./share.js";
-import { hasEnded, situation } from "./waiting.js";
+import { hasEnded, isLive, situation } from "./waiting.js";
 
 const kPanelPeriod_ms = 250, kFrugalPanelPeriod_ms = 1000;
 const kOldImage_s = 3;
@@ -185,13 +185,14 @@ class App {
     const report = situation({ connection: link, hello: session.hello, robot, now_ms });
     this.report = report;
     const allowed = connection.state === "open" && session.hello?.control === true;
-    this.header.update({ report, session, robot, pose_ms: this.age.shown_ms(Date.now(), connection.clock.offset_ms) });
+    const live = robot?.tracking != null && isLive(robot, now_ms);
+    this.header.update({ report, session, robot, live, pose_ms: this.age.shown_ms(Date.now(), connection.clock.offset_ms) });
     byId("retry").hidden = connection.state !== "closed";
     if (allowed) this.questions.followDoubt(robot, now_ms, () => this.image.update(this.robot));
     if (this.frame.shows("plots")) this.plots.update(robot, now_s);
     if (this.frame.shows("system")) this.system.update(session, robot, connection, now_s);
     this.fleet.update(session, this.selected, link, now_ms);
-    this.historyBar.update(robot);
+    this.historyBar.update(robot, live);
     if (this.frame.shows("events")) this.events.update(robot);
     this.controls.update(robot, allowed, connection.state === "open" && session.hello?.control === false);
     this.replay.update(robot, allowed);

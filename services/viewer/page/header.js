@@ -14,13 +14,13 @@ export class Header {
     this.list = "";
   }
 
-  /** report: from situation(); pose_ms: age of the newest pose on the screen. */
-  update({ report, session, robot, pose_ms }) {
+  /** report: from situation(); pose_ms: age of the newest pose on the screen; live: poses come. */
+  update({ report, session, robot, pose_ms, live }) {
     setAttribute(byId("state"), "data-level", report.level);
     setText(byId("state-text"), report.title);
     this.#notice(report, robot);
     this.#robots(session, robot);
-    setText(byId("age"), robot?.tracking && !report.quiet ? ms(pose_ms) : "–");
+    setText(byId("age"), live ? ms(pose_ms) : "–");
     setAttribute(byId("age"), "data-level", report.level === "wait" || !(pose_ms > kGoodAge_ms) ? "ok" : pose_ms > kBadAge_ms ? "bad" : "warn");
     setText(byId("keyframes"), count(robot?.tracking?.keyframes ?? robot?.count("posedCount")));
     setText(byId("landmarks"), count(robot?.tracking?.landmarks ?? robot?.count("pointTotal")));

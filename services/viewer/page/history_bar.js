@@ -20,9 +20,10 @@ export class HistoryBar {
     byId("compare-close").addEventListener("click", () => this.#unpin());
   }
 
-  update(robot) {
+  /** live: poses come. */
+  update(robot, live) {
     if (robot !== this.robot) this.live();
-    this.robot = robot;
+    Object.assign(this, { robot, isLive: live });
     const { history, playback } = robot ?? {}, shown = Boolean(history) && !playback && history.length_s >= kShortest_s;
     byId("history").hidden = !shown;
     if (!shown) return;
@@ -32,7 +33,8 @@ export class HistoryBar {
     byId("history-live").disabled = !this.moment;
     const ago_s = this.moment ? history.moments.at(-1).stamp_s - this.moment.stamp_s : 0;
     if (this.moment) this.slider.value = -ago_s;
-    setText(byId("history-time"), this.moment ? `${ago_s.toFixed(1)} s ago, ${this.moment.state}` : "live");
+    setText(byId("history-time"), this.moment ? `${ago_s.toFixed(1)} s ago, ${this.moment.state}` : live ? "live" : "last pose");
+    setText(byId("history-live"), live ? "Live" : "Last");
     if (this.pinned) this.#compare();
   }
 
@@ -40,14 +42,14 @@ export class HistoryBar {
     if (!this.moment) return;
     this.moment = null;
     this.onMoment(null);
-    this.update(this.robot);
+    this.update(this.robot, this.isLive);
   }
 
   #seek() {
     const { history } = this.robot;
     this.moment = Number(this.slider.value) > -0.25 ? null : history.before(-Number(this.slider.value));
     this.onMoment(this.moment);
-    this.update(this.robot);
+    this.update(this.robot, this.isLive);
   }
 
   #pin() {

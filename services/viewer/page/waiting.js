@@ -7,6 +7,7 @@ import { reasons } from "./doubt.js";
 import { vendorName } from "./format.js";
 
 const kStale_ms = 3000;
+const kLastFrames_ms = 15_000;   // a busy computer may need for one of them
 const kSources = ["camera", "replay"];
 const kStopped = ["finished", "gone"];
 
@@ -60,9 +61,11 @@ function ofServices(robot, hello) {
   return report("wait", "Waiting for the first pose", reasons.join("; "));
 }
 
+/** Whether poses come. */
+export const isLive = (robot, now_ms) => now_ms - robot.trackingAt_ms <= kStale_ms;
+
 function ofTracking(robot, now_ms) {
-  const age_ms = now_ms - robot.trackingAt_ms;
-  if (age_ms > kStale_ms) return withoutPoses(robot, age_ms);
+  if (!isLive(robot, now_ms)) return withoutPoses(robot, now_ms - robot.trackingAt_ms);
   const [level, title, detail] = kStates[robot.tracking.state] ?? ["warn", `State: ${robot.tracking.state}`, ""];
   return report(level, title, [detail, ...reasons(robot)].join(" ").trim());
 }
@@ -81,11 +84,12 @@ function withoutPoses(robot, age_ms) {
   const died = [...robot.deaths.keys()].filter((name) => ["camera", "filter", "slam"].includes(name));
   if (hasEnded(robot) && died.length > 0)
     return report("warn", `${died.join(" and ")} died on the way`, "The rest of the source was played: frames may be missing. The report of the run says more.");
+  const slam = services.find((service) => service.name === "slam"), slamStopped = !slam || kStopped.includes(slam.state);
+  if (hasEnded(robot) && !slamStopped && age_ms < kLastFrames_ms) return report("wait", "Waiting for the last poses", "The source has ended, and slam still runs.");
   if (hasEnded(robot)) return { ...report("wait", "The source has ended", "Its map stays as long as the viewer runs."), quiet: true };
   const sources = sourcesOf(robot), gone = sources.find(({ state }) => state === "gone");
   if (gone && sources.every(({ state }) => kStopped.includes(state))) return report("bad", `The ${gone.name} is gone`, "It sends no heartbeat: it died, was killed, or its host is away.");
-  const slam = services.find((service) => service.name === "slam");
   if (!slam && playback) return { ...report("wait", "No pose", `for ${Math.round(age_ms / 1000)} s of the recording`), quiet: true };
-  if (!slam || kStopped.includes(slam.state)) return report("bad", "slam is gone", "Its last map is shown.");
+  if (slamStopped) return report("bad", "slam is gone", "Its last map is shown.");
   return report("warn", "No pose", `for ${Math.round(age_ms / 1000)} s. ${slam.message}`.trim());
 }

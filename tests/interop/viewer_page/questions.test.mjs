@@ -65,6 +65,10 @@ test("a live run can be scrubbed back and two of its moments compared", async ()
   assert.equal(await page.$$eval("#compare img", (images) => images.length), 2);
   await page.click("#history-live");
   assert.equal(await textOf(page, "#history-time"), "live");
+  server.robots[0].sendsPoses = false;
+  await waitFor(page, () => document.getElementById("history-time").textContent === "last pose");
+  assert.equal(await textOf(page, "#age"), "–", "of no pose that comes");
+  server.robots[0].sendsPoses = true;
 });
 
 test("a click asks a thing, Shift and a click measures", async () => {

@@ -54,8 +54,10 @@ test("when no pose comes, the reason: paused, ended, slam gone, unknown", () => 
   assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "paused", position_s: 1 } }), 10_000), "Paused");
   assert.equal(situation({ connection: open, hello, robot: robotWith(live, { ...tracked("ok"), playback: { state: "paused", position_s: 1 } }),
                            now_ms: 10_000 }).quiet, true);
-  assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "ended" } }), 10_000), "The source has ended");
-  assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 10_000), "The source has ended");
+  assert.equal(title(robotWith(live, { ...tracked("ok"), playback: { state: "ended" } }), 20_000), "The source has ended");
+  assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 10_000), "Waiting for the last poses");
+  assert.equal(title(robotWith([service("camera", "finished"), service("slam")], tracked("ok")), 20_000), "The source has ended");
+  assert.equal(title(robotWith([service("camera", "finished"), service("slam", "finished")], tracked("ok")), 4000), "The source has ended");
   assert.equal(title(robotWith([service("camera", "gone"), service("slam")], tracked("ok")), 10_000), "The camera is gone");
   assert.equal(hasEnded(robotWith([service("camera", "gone")])), false, "one that died has not come to its end");
   assert.equal(title(robotWith([service("camera"), service("slam", "gone")], tracked("ok")), 10_000), "slam is gone");
@@ -73,7 +75,7 @@ test("a source of which a part is missing has not simply ended", () => {
   assert.equal(title(robot, 10_000), "camera died on the way");
   camera(3, "running");
   camera(3, "finished");
-  assert.equal(title(robot, 10_000), "The source has ended", "of the next run");
+  assert.equal(title(robot, 20_000), "The source has ended", "of the next run");
 });
 
 test("a server of another protocol is not tried", () => {
