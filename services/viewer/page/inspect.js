@@ -61,7 +61,7 @@ export function describe({ kind, id, point, keyframe, certainty, mover }, tracki
     return { title: `Keyframe ${id}`, rows };
   }
   const speed_mps = Math.hypot(...mover.velocity);
-  rows.push(["Size", `${place(mover.size)} m`], ["Speed", mover.rests ? "at rest" : `${speed_mps.toFixed(2)} m/s`],
+  rows.push(["Size", `${place(mover.size)} m`], ["Speed", mover.rests ? "within its uncertainty" : `${speed_mps.toFixed(2)} m/s`],
             ["Static", `${Math.round(100 * mover.static_probability)} %`]);
   return { title: `${mover.label || "Object of no class"} ${id}`, rows };
 }
