@@ -201,6 +201,7 @@ class App {
       this.asked.at_s = undefined;
     }
     this.layers.update(session, robot);
+    setText(byId("drawing"), this.scene?.pace.reason(this.scene.software) ?? "");
     const age_s = robot?.imageAge_s(now_ms) ?? 0;
     byId("image-age").hidden = !(age_s > kOldImage_s) || byId("image").hidden || this.image.frozen;
     setText(byId("image-age"), `${Math.round(age_s)} s ago`);

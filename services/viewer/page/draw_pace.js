@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// How often a processor that also draws may do so. Where it is the robot's own, drawing makes poses late: there the page
+// How often a computer may draw. Where the processor draws, and it is the robot's own, drawing makes poses late: there the page
 // begins slowly, steps back at once when poses become late, and draws more often again while they are in time.
 
 import { percentile } from "./series.js";
@@ -11,14 +11,36 @@ const kCautious_ms = 250;                      // at first, on the robot's own c
 const kLate = 1.6, kLater = 1.5;               // times a frame, from a frame to its pose; times what is usual here
 const kBack = 1.4, kNearer = 0.998;            // for each late pose, for each that is in time
 const kMemory = 0.9;
+const kSlow_ms = 200, kSlowFrame_ms = 150;     // between two drawings of a computer that needs so long for each
+const kSlowFrames = 15;                        // in a row; one alone may be a program that starts
+const kWorthSaying_ms = 70;
 const kUsual = 150;                            // poses that show what is usual
 
 export class DrawPace {
   /** sameHost: whether the page may run on the computer whose poses it shows. */
   constructor(sameHost) {
     this.sameHost = sameHost;
+    this.shortest_ms = kShortest_ms;
     this.period_ms = sameHost ? kCautious_ms : kShortest_ms;
     this.latencies_ms = [];
+    this.slowFrames = 0;
+  }
+
+  /** A drawing took so long. True when this is the last of many slow ones: from now on there are few. */
+  drawn(took_ms) {
+    this.slowFrames = took_ms > kSlowFrame_ms ? this.slowFrames + 1 : 0;
+    if (this.slow || this.slowFrames < kSlowFrames) return false;
+    this.slow = true;
+    this.shortest_ms = kSlow_ms;
+    this.period_ms = Math.max(this.period_ms, kSlow_ms);
+    return true;
+  }
+
+  /** Why there are few drawings, one line; empty: there are not. software: without a graphics card. */
+  reason(software) {
+    if (!(software || this.slow) || this.period_ms < kWorthSaying_ms) return "";
+    const rate = Math.round(1000 / this.period_ms), why = software ? "Drawn without a graphics card" : "This computer draws slowly";
+    return `${why}: at most ${rate} ${rate === 1 ? "picture" : "pictures"} per second`;
   }
 
   /** Of each pose: the frame's number, its stamp, and the time from the frame to its pose. */
@@ -29,7 +51,7 @@ export class DrawPace {
     const frame_ms = passed_ms / frames;
     this.frame_ms = kMemory * (this.frame_ms ?? frame_ms) + (1 - kMemory) * frame_ms;
     this.period_ms *= this.#isLate(latency_ms) ? kBack : kNearer;
-    this.period_ms = Math.min(kLongest_ms, Math.max(kShortest_ms, this.period_ms));
+    this.period_ms = Math.min(kLongest_ms, Math.max(this.shortest_ms, this.period_ms));
   }
 
   /** Later than the robot can afford, or than it usually is while less than a frame is no reason to hurry. */

@@ -50,7 +50,12 @@ export class Scene {
 
   /** Whether everything that is drawn is drawn by the processor that also computes the poses. */
   get frugal() {
-    return this.software && this.pace.sameHost;
+    return this.weak && this.pace.sameHost;
+  }
+
+  /** Whether it must draw less often. */
+  get weak() {
+    return this.software || this.pace.slow === true;
   }
 
   applySettings() {
@@ -164,7 +169,7 @@ export class Scene {
       this.asked_ms = performance.now();
       requestAnimationFrame((now_ms) => this.#frame(now_ms));
     };
-    const pause_ms = this.software && !this.#measuring() ? (this.drawn_ms ?? 0) + this.pace.period_ms - performance.now() : 0;
+    const pause_ms = this.weak && !this.#measuring() ? (this.drawn_ms ?? 0) + this.pace.period_ms - performance.now() : 0;
     if (pause_ms > 0) setTimeout(draw, pause_ms);
     else draw();
   }
@@ -241,7 +246,9 @@ export class Scene {
   }
 
   #draw(now_ms, followed) {
-    this.detail.frame(this.#lastTook_ms(now_ms), this.#pointCount(), this.frugal);
+    const took_ms = this.#lastTook_ms(now_ms);
+    if (this.pace.drawn(took_ms)) this.#resize();
+    this.detail.frame(took_ms, this.#pointCount(), this.frugal);
     this.look.share = this.resting ? 1 : this.detail.share;
     this.forced = this.resting = false;
     this.drawn_ms = now_ms;
@@ -345,7 +352,7 @@ export class Scene {
   #resize() {
     const { clientWidth: width, clientHeight: height } = this.container;
     if (width === 0 || height === 0) return;
-    this.renderer.setPixelRatio(Math.min(kLargestPixelRatio, window.devicePixelRatio));
+    this.renderer.setPixelRatio(Math.min(this.weak ? 1 : kLargestPixelRatio, window.devicePixelRatio));
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -369,7 +376,7 @@ function createRenderer(software) {
 function drawsInSoftware() {
   const context = document.createElement("canvas").getContext("webgl");
   const info = context?.getExtension("WEBGL_debug_renderer_info");
-  const name = info ? context.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  const name = context?.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER) ?? "";
   context?.getExtension("WEBGL_lose_context")?.loseContext();
   return kSoftware.test(name);
 }

@@ -24,6 +24,7 @@ test("the map appears with every point and every keyframe", async () => {
   assert.deepEqual(counts, { points: server.robots[0].room.pointCount, pointsTotal: 5000, keyframes: 60 });
   assert.equal(await textOf(page, "#state-text"), "Tracking");
   assert.equal(await page.$eval("#notice", (node) => node.hidden), true);
+  await waitFor(page, () => /^Drawn without a graphics card: at most \d+ pictures? per second$/.test(document.getElementById("drawing").textContent));
   await waitFor(page, () => rtdViewer.poseAgeP50 > 0 && !document.getElementById("image").hidden);
   await waitFor(page, () => document.querySelectorAll("#services > li").length === 6 && document.getElementById("removed").textContent > "0");
 });

@@ -122,6 +122,17 @@ test("where drawing makes poses late, the page draws less often, and more often 
   assert.deepEqual(["localhost", "127.0.0.1", "[::1]", "robot", "127.example.org"].map(isLoopback), [true, true, true, false, false]);
 });
 
+test("a computer that draws slowly draws less often, and the page says so", () => {
+  const pace = new DrawPace(false), draw = (took_ms, n) => Array.from({ length: n }, () => pace.drawn(took_ms)).filter(Boolean).length;
+  assert.equal(draw(160, 14) + draw(20, 1) + draw(160, 14), 0, "not always");
+  assert.equal(pace.reason(false), "");
+  assert.equal(draw(160, 20), 1, "once");
+  assert.equal(pace.period_ms, 200);
+  assert.equal(pace.reason(false), "This computer draws slowly: at most 5 pictures per second");
+  assert.equal(new DrawPace(true).reason(true), "Drawn without a graphics card: at most 4 pictures per second");
+  assert.equal(new DrawPace(false).reason(true), "", "it is fast enough");
+});
+
 test("slow frames lower the share of points that is drawn, fast ones raise it to all again", () => {
   const detail = new Detail(), draw = (took_ms, n, points = 1e6) => { for (let i = 0; i < n; ++i) detail.frame(took_ms, points); };
   draw(33, 20);
