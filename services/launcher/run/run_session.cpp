@@ -267,8 +267,10 @@ void RunSession::sample_memory(milliseconds time) {
   if (time < next_sample_) return;
   next_sample_ = time + kMemoryPeriod;
   for (const auto& [service, process] : supervisor_.running()) {
-    const auto status = io::try_read_file("/proc/" + std::to_string(process) + "/status", io::kKernelText);
-    usage_.add_sample(service, peak_rss_mb(status.value_or("")));
+    const auto text_of = [folder = "/proc/" + std::to_string(process)](const char* file) {
+      return io::try_read_file(folder + file, io::kKernelText).value_or("");
+    };
+    usage_.add_sample(service, peak_rss_mb(text_of("/status")), cpu_s(text_of("/stat")));
   }
 }
 

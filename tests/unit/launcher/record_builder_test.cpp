@@ -431,6 +431,15 @@ TEST(record_builder, counters_that_claim_too_much_saturate) {
   }
 }
 
+TEST(record_builder, losses_of_topics_without_frames_are_no_lost_frames) {
+  FrameList store;
+  RecordBuilder builder(store);
+  builder.add(status_of("dense", 1, {{"topic.rtd/status.lost", 779}, {"topic.rtd/frame.lost", 2}}));
+  run_record::RunRecord record;
+  builder.fill(record);
+  EXPECT_THAT(record.drops, ElementsAre(testing::Pair("dense.topic.rtd/frame.lost", 2)));
+}
+
 TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_number) {
   FrameList store;
   RecordBuilder builder(store);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "common/process/posix_process_host.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
@@ -56,6 +57,12 @@ TEST(log_level, the_reason_is_the_last_error_line_else_the_tail) {
 TEST(process_usage, reads_peak_memory) {
   EXPECT_DOUBLE_EQ(peak_rss_mb("VmPeak:\t  999 kB\nVmHWM:\t    2048 kB\nVmRSS:\t 12 kB\n"), 2.0);
   EXPECT_DOUBLE_EQ(peak_rss_mb("Name:\trtd-slam\nState:\tZ (zombie)\n"), -1.0);
+}
+
+TEST(process_usage, reads_cpu_time) {
+  const std::string ticks = std::to_string(3 * sysconf(_SC_CLK_TCK));
+  EXPECT_DOUBLE_EQ(cpu_s("7 (rtd (x) y) S 1 7 7 0 -1 4194560 900 0 2 0 " + ticks + ' ' + ticks + " 0 0 20"), 6.0);
+  EXPECT_DOUBLE_EQ(cpu_s(""), 0.0);
 }
 
 TEST(live_status, shows_everything_in_one_short_line) {

@@ -113,11 +113,12 @@ TEST(terminal, leaves_out_what_is_not_read_and_says_so) {
 
 TEST(usage_registry, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
   UsageRegistry book;
-  book.add_sample("slam", 100);
-  book.add_sample("slam", 90);
+  book.add_sample("slam", 100, 1.0);
+  book.add_sample("slam", 90, 1.9);
+  EXPECT_DOUBLE_EQ(book.usage().at("slam").cpu_s, 1.9) << "it still runs";
   book.add_exit("slam", {0, 9, 2.0, 500});
   book.add_restart("slam");
-  book.add_sample("slam", 120);
+  book.add_sample("slam", 120, 1.4);
   book.add_exit("slam", {0, 0, 1.5, 500});
   const run_record::ProcessUsage usage = book.usage().at("slam");
   EXPECT_DOUBLE_EQ(usage.cpu_s, 3.5);
@@ -127,7 +128,7 @@ TEST(usage_registry, adds_cpu_time_over_all_lives_and_keeps_the_highest_peak) {
 
 TEST(usage_registry, a_process_too_short_to_be_sampled_is_taken_from_the_kernels_account) {
   UsageRegistry book;
-  book.add_sample("camera", -1);
+  book.add_sample("camera", -1, 0);
   book.add_exit("camera", {0, 0, 0.1, 30});
   EXPECT_DOUBLE_EQ(book.usage().at("camera").peak_rss_mb, 30);
 }

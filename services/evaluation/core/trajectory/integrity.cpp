@@ -163,9 +163,9 @@ std::string explain(const Drift& drift, const std::optional<double>& scene_depth
   constexpr double kNear = 0.25;  // of the scene's depth
   if (!drift.nearly_constant()) return {};
   std::string text = fmt::format(
-      "nearly constant: the pose trades a sideways movement against a turn that keeps what is {:.1f} m away in place; "
-      "it follows something nearer than that",
-      drift.quotient_m_per_rad);
+      "{:.2f} m and {:.1f} deg in a third of a second: the pose trades a sideways movement against a turn that keeps "
+      "what is {:.1f} m away in place; it follows something nearer than that",
+      drift.median_m, drift.median_rad * kRadToDeg, drift.quotient_m_per_rad);
   if (!scene_depth_m) return text;
   const bool near = std::abs(drift.quotient_m_per_rad - *scene_depth_m) <= kNear * *scene_depth_m;
   return text +

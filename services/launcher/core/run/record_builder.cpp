@@ -26,7 +26,11 @@ constexpr double kMaxCounted = 9e15;  // beyond, a double counts no single frame
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 constexpr std::array<const char*, 5> kLossNames = {"dropped", "late", "skipped", "lost", "refused"};
 
+/// Of frames: a heartbeat that did not arrive is none.
 bool counts_losses(const std::string& metric) {
+  if (metric.starts_with(metric::kTopicPrefix) && metric.find("/frame") == std::string::npos &&
+      metric.find("/features") == std::string::npos)
+    return false;
   return !metric.starts_with(metric::kFrameIdPrefix) &&
          std::ranges::any_of(kLossNames, [&](const char* name) { return metric.find(name) != std::string::npos; });
 }
