@@ -42,7 +42,7 @@ std::optional<Eigen::Isometry3d> tf_extrinsics(recordings::Reader& recording, co
   return std::nullopt;
 }
 
-/// T_color_depth of a recording: identity for images in one frame, otherwise by the transforms that the RealSense SDK
+/// T_color_depth of a recording: identity for images in one frame, otherwise by what the camera's SDK
 /// records with each stream, otherwise by tf (tf_static first). Reads transforms until it is found, whatever else was
 /// played before; empty when it is not. Throws SourceError.
 std::optional<Eigen::Isometry3d> recorded_extrinsics(recordings::Reader& recording, const ImageOrigin& color,
@@ -182,9 +182,11 @@ bool ImagePairs::lacks_stamps(const std::string& topic) {
 std::optional<geometry::CameraModel> ImagePairs::recorded_camera(const std::string& info_topic,
                                                                  const ImageOrigin& image) {
   if (info_topic.empty()) return std::nullopt;
-  const RecordedMessage message = first_of(*recording_, info_topic);
-  const msg::CameraInfo info =
-      is_sdk_text(message) ? sdk_camera_info(message) : ros::decode<msg::CameraInfo>(message.wire, message.bytes);
+  msg::CameraInfo info = recorded_camera_info(*recording_, info_topic);
+  if (info.width == 0 && info.height == 0) {  // not filled in
+    info.width = static_cast<std::uint32_t>(image.size_px.width);
+    info.height = static_cast<std::uint32_t>(image.size_px.height);
+  }
   return to_camera_model(info, image.topic, recording_->name() + ", topic " + info_topic, image.size_px);
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/camera/frame_source.hpp"
+#include "common/camera/recording/sdk_topics.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -35,12 +36,13 @@ constexpr std::array kDrivers = {
     DriverNames{"/rgb/image_color", "/depth/image"},                                         // TUM
     DriverNames{"/color/image_raw", "/depth_registered/image_raw"},                          // Orbbec
     DriverNames{"/color/image_raw", "/depth/image_raw"},                                     // Orbbec
-    DriverNames{"/color/image_raw", "/depth/image_rect_raw"},                      // RealSense, not registered
-    DriverNames{"/rgb/image_raw", "/stereo/image_raw"},                            // OAK (depthai-ros)
-    DriverNames{"/rgb/image_rect", "/stereo/image_raw"},                           //
-    DriverNames{"/color/image", "/stereo/depth"},                                  //
-    DriverNames{"/rgb/image_raw", "/depth/image_raw"},                             // Azure Kinect, not registered
-    DriverNames{"/sensor_1/Color_0/image/data", "/sensor_0/Depth_0/image/data"}};  // RealSense SDK
+    DriverNames{"/color/image_raw", "/depth/image_rect_raw"},                     // RealSense, not registered
+    DriverNames{"/rgb/image_raw", "/stereo/image_raw"},                           // OAK (depthai-ros)
+    DriverNames{"/rgb/image_rect", "/stereo/image_raw"},                          //
+    DriverNames{"/color/image", "/stereo/depth"},                                 //
+    DriverNames{"/rgb/image_raw", "/depth/image_raw"},                            // Azure Kinect, not registered
+    DriverNames{"/sensor_1/Color_0/image/data", "/sensor_0/Depth_0/image/data"},  // RealSense SDK
+    DriverNames{"/cam/sensor_2/frameType_2", "/cam/sensor_3/frameType_3"}};       // Orbbec SDK
 
 constexpr std::array<std::string_view, 3> kColorTransports = {"", "/compressed", "/zstd"};
 constexpr std::array<std::string_view, 3> kDepthTransports = {"", "/compressedDepth", "/zstd"};
@@ -90,7 +92,8 @@ bool is_infrared(const RecordedTopic& topic) {
 }
 bool is_info(const RecordedTopic& topic) {
   const bool of_sdk = topic.type == "std_msgs/String" && topic.name.starts_with("/device_");
-  return topic.type == "sensor_msgs/CameraInfo" || (of_sdk && topic.name.ends_with("/camera_info"));
+  return topic.type == "sensor_msgs/CameraInfo" || (of_sdk && topic.name.ends_with("/camera_info")) ||
+         topic.type.ends_with("StreamProfileInfo");
 }
 
 bool is_video(const RecordedTopic& topic) {
@@ -174,6 +177,7 @@ TopicPair choose_images(const Reader& recording, const ImageTopics& named) {
 /// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info; in bags of the
 /// RealSense SDK .../Color_0/image/data, .../Color_0/info/camera_info. Empty when there is none.
 std::string info_beside(const Topics& infos, std::string image) {
+  if (const std::string profile = orbbec_profile_topic(image); contains(infos, profile)) return profile;
   for (std::size_t slash = image.rfind('/'); slash != std::string::npos; slash = image.rfind('/')) {
     image.resize(slash);
     for (const char* name : {"/camera_info", "/info/camera_info"}) {
@@ -206,15 +210,17 @@ std::vector<TopicPair> driver_pairs(const std::vector<std::string>& color, const
 }
 
 bool named_as_depth(const std::string& topic) {
-  return contains_any(topic, {"depth", "/stereo/image_raw"});
+  return contains_any(topic, {"depth", "/stereo/image_raw", "/cam/sensor_3/"});
 }
 
 bool named_as_other_than_color(const std::string& topic) {
+  if (topic.starts_with("/cam/sensor_")) return !topic.starts_with("/cam/sensor_2/");  // Orbbec SDK
   return named_as_depth(topic) || contains_any(topic, {"/ir", "infra", "mask"});
 }
 
 bool named_as_infrared(const std::string& topic) {
-  return !named_as_depth(topic) && contains_any(topic, {"/infra1/", "/infra/", "/ir/", "/infrared_1/", "/left_ir/"});
+  return !named_as_depth(topic) && contains_any(topic, {"/infra1/", "/infra/", "/ir/", "/infrared_1/", "/left_ir/",
+                                                        "/cam/sensor_1/", "/cam/sensor_6/"});
 }
 
 std::string sdk_depth_unit_topic(const std::string& depth_topic) {

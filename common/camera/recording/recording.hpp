@@ -23,7 +23,8 @@ struct TopicPair {
 /// The pairs that the best known driver makes of these topics: colour and depth behind the same names of camera and
 /// namespace, raw images before compressed ones, depth registered to colour before depth that is not. One element: the
 /// choice is clear; several: that many cameras; none: the names are not those of a driver in the table of
-/// recording.cpp (TUM, OpenNI, Orbbec, RealSense in ROS 1 and 2 and its SDK, OAK, Azure Kinect, Kinect v2, ZED).
+/// recording.cpp (TUM, OpenNI, Orbbec and its SDK, RealSense in ROS 1 and 2 and its SDK, OAK, Azure Kinect, Kinect v2,
+/// ZED).
 std::vector<TopicPair> driver_pairs(const std::vector<std::string>& color, const std::vector<std::string>& depth);
 
 /// Whether a driver gives this name to depth, or the name says so itself.

@@ -125,9 +125,10 @@ ImageRead decode_compressed_depth(const msg::CompressedImage& image, const std::
   return result;
 }
 
-const std::map<std::string, int> kDepthTypes = {{"16UC1", CV_16UC1}, {"mono16", CV_16UC1}, {"32FC1", CV_32FC1}};
+const std::map<std::string, int> kDepthTypes = {
+    {"16UC1", CV_16UC1}, {"mono16", CV_16UC1}, {"z16", CV_16UC1}, {"32FC1", CV_32FC1}};
 
-constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
+constexpr const char *kCompressed = "sensor_msgs/CompressedImage", *kJpeg = "mjpg";  // of Orbbec's SDK
 
 SourceError unsupported(const RecordedMessage& message, const std::string& encoding, const std::string& known) {
   return SourceError(message.topic + " is encoded as '" + io::abridged(encoding) +
@@ -170,6 +171,7 @@ std::string remark_on(const RecordedMessage& message, const msg::Image& image, i
 }
 
 ImageRead raw_color(const RecordedMessage& message, msg::Image image) {
+  if (image.encoding == kJpeg) return decode_color(image.data, name_of(message));
   const ColorEncoding* const encoding = find_color_encoding(image.encoding);
   if (encoding == nullptr) throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
   if (image.is_bigendian != 0 && CV_MAT_DEPTH(encoding->type) != CV_8U) {
@@ -221,7 +223,7 @@ msg::Image unpacked(const msg::CompressedImage& packed) {
   return image;
 }
 
-/// nv12, nv21 and nv24 have more rows than they say, which other images must not.
+/// nv12, nv21 and nv24 have more rows than they say, and JPEG has none, which other images must not.
 msg::Image plain_image(const RecordedMessage& message) {
   try {
     return ros::decode<msg::Image>(message.wire, message.bytes);
@@ -229,6 +231,7 @@ msg::Image plain_image(const RecordedMessage& message) {
     msg::Image image;
     message.wire == ros::Wire::kCdr ? ros::WireReader<ros::Wire::kCdr>(message.bytes)(image)
                                     : ros::WireReader<ros::Wire::kRos1>(message.bytes)(image);
+    if (image.encoding == kJpeg) return image;
     const auto* encoding = image.encoding.starts_with("nv") ? find_color_encoding(image.encoding) : nullptr;
     if (encoding == nullptr || image.data.size() != std::uint64_t{image.step} * encoding->rows(image.height)) throw;
     return image;

@@ -2,7 +2,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/recording/sdk_topics.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <map>
+#include <string_view>
+#include <vector>
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/recording/recording.hpp"
@@ -62,13 +68,7 @@ std::optional<Eigen::Isometry3d> transform_at(recordings::Reader& recording, con
   return T;
 }
 
-}  // namespace
-
-bool is_sdk_text(const RecordedMessage& message) {
-  return message.type == kText;
-}
-
-msg::CameraInfo sdk_camera_info(const RecordedMessage& message) {
+msg::CameraInfo text_camera_info(const RecordedMessage& message) {
   const SettingsText text = settings_of(message);
   const auto number = [&](const char* key) {
     const std::optional<double> value = text.number(key);
@@ -85,12 +85,89 @@ msg::CameraInfo sdk_camera_info(const RecordedMessage& message) {
   return info;
 }
 
+constexpr std::string_view kOrbbecImages = "/cam/sensor_", kOrbbecProfiles = "/cam/streamProfileType_";
+
+using ProfileFields = std::map<std::string, std::vector<double>>;
+
+/// The fields of a stream profile behind its header, which are numbers, by the definition that the recording has of
+/// them, a line each: "float32[9] rotationMatrix".
+ProfileFields numbers_in(const RecordedMessage& message, const std::string& definition) {
+  ros::ByteCursor cursor(message.bytes);
+  cursor.take(12);  // number and stamp
+  cursor.take(cursor.read<std::uint32_t>());
+  ProfileFields numbers;
+  for (const io::TextLine& line : io::split_lines(definition, " []\t\r")) {
+    if (line.fields.front().starts_with('=')) break;  // other types
+    if (line.fields.size() < 2 || line.fields.back() == "header") continue;
+    const std::string& type = line.fields.front();
+    const double count = line.fields.size() == 2 ? 1 : io::parse_number(line.fields[1]).value_or(0);
+    for (int i = 0; i < count; ++i)
+      numbers[line.fields.back()].push_back(type == "float32"  ? static_cast<double>(cursor.read<float>())
+                                            : type == "uint16" ? cursor.read<std::uint16_t>()
+                                                               : cursor.read<std::uint8_t>());
+  }
+  return numbers;
+}
+
+ProfileFields profile_on(recordings::Reader& recording, const std::string& topic) {
+  return numbers_in(first_of(recording, topic), topic_named(recording, topic)->schema_text);
+}
+
+msg::CameraInfo orbbec_camera_info(ProfileFields profile) {
+  constexpr std::array kModels = {"None",          "Modified Brown-Conrady", "Inverse Brown-Conrady",
+                                  "Brown-Conrady", "Brown-Conrady",          "Kannala-Brandt"};
+  const auto values = [&](const char* name, std::size_t count) {
+    std::vector<double>& there = profile[name];
+    there.resize(count);
+    return there;
+  };
+  const auto k = values("cameraIntrinsic", 4);   // fx, fy, cx, cy
+  const auto d = values("cameraDistortion", 8);  // k1 to k6, p1, p2
+  const auto whole = [&](const char* name) {
+    return static_cast<std::uint32_t>(std::max(0.0, std::min(1e5, values(name, 1)[0])));  // NaN becomes 1e5
+  };
+  const std::uint32_t model = whole("distortionModel");
+  msg::CameraInfo info;
+  info.width = whole("width");
+  info.height = whole("height");
+  info.k = {k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1};
+  info.distortion_model = model < kModels.size() ? kModels[model] : fmt::format("{} of Orbbec", model);
+  info.d = {d[0], d[1], d[6], d[7], d[2], d[3], d[4], d[5]};
+  if (model == 5) info.d = {d[0], d[1], d[2], d[3]};
+  return info;
+}
+
+/// Rows of a rotation and millimetres; zeros where colour was not recorded.
+std::optional<Eigen::Isometry3d> orbbec_extrinsics(ProfileFields profile) {
+  const auto &rotation = profile["rotationMatrix"], &translation = profile["translationMatrix"];
+  if (rotation.size() != 9 || translation.size() != 3) return std::nullopt;
+  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix3d>(rotation.data()).transpose();
+  if (!(R * R.transpose()).isIdentity(0.05)) return std::nullopt;
+  return Eigen::Translation3d(Eigen::Map<const Eigen::Vector3d>(translation.data()) / 1000) *
+         Eigen::Quaterniond(R).normalized();
+}
+
+}  // namespace
+
+std::string orbbec_profile_topic(const std::string& image_topic) {
+  if (!image_topic.starts_with(kOrbbecImages)) return {};
+  const std::size_t number = kOrbbecImages.size();
+  return std::string(kOrbbecProfiles) + image_topic.substr(number, image_topic.find('/', number) - number);
+}
+
+msg::CameraInfo recorded_camera_info(recordings::Reader& recording, const std::string& topic) {
+  if (topic.starts_with(kOrbbecProfiles)) return orbbec_camera_info(profile_on(recording, topic));
+  const RecordedMessage message = first_of(recording, topic);
+  if (message.type == kText) return text_camera_info(message);
+  return ros::decode<msg::CameraInfo>(message.wire, message.bytes);
+}
+
 std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth_topic) {
   const std::string topic = sdk_depth_unit_topic(depth_topic);
   if (topic.empty() || topic_named(recording, topic) == nullptr) return std::nullopt;
   constexpr double kMin_m = 1e-6, kMax_m = 0.1;
   const RecordedMessage message = first_of(recording, topic);
-  const double unit_m = is_sdk_text(message) ? io::parse_number(text_of(message)).value_or(0) : number_in(message);
+  const double unit_m = message.type == kText ? io::parse_number(text_of(message)).value_or(0) : number_in(message);
   if (unit_m >= kMin_m && unit_m <= kMax_m) return unit_m;  // NaN compares false
   throw SourceError(recording.name() + ", topic " + topic + ": the depth unit is " + std::to_string(unit_m) +
                     " m, allowed is 0.000001 to 0.1; give the units of a metre with ?depth_factor=");
@@ -98,6 +175,10 @@ std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std:
 
 std::optional<Eigen::Isometry3d> sdk_extrinsics(recordings::Reader& recording, const std::string& color_topic,
                                                 const std::string& depth_topic) {
+  if (const std::string profile = orbbec_profile_topic(depth_topic); topic_named(recording, profile) != nullptr) {
+    if (named_as_infrared(color_topic)) return Eigen::Isometry3d::Identity();
+    return orbbec_extrinsics(profile_on(recording, profile));
+  }
   const std::string of_color = transforms_of(color_topic), of_depth = transforms_of(depth_topic);
   if (of_color.empty() || of_depth.empty()) return std::nullopt;
   for (const RecordedTopic& topic : recording.topics()) {

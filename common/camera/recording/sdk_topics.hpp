@@ -9,22 +9,23 @@
 #include "common/camera/recording/recording.hpp"
 #include "common/msg/ros.hpp"
 
-/// What the RealSense SDK and its Viewer record beside their images: in .bag as messages of ROS, in .db3 (since 2026)
-/// as texts "key=value;key=value".
+/// What the SDKs of cameras record beside their images. RealSense: in .bag messages of ROS, in .db3 (since 2026) texts
+/// "key=value;key=value". Orbbec (SDK 2, in .bag and .mcap): a "stream profile" for each stream.
 namespace rtd::camera {
 
-/// Whether the message is such a text.
-bool is_sdk_text(const RecordedMessage& message);
+/// The topic with the stream profile of an image of Orbbec's SDK; empty for topics of others.
+std::string orbbec_profile_topic(const std::string& image_topic);
 
-/// "width=640;height=480;fx=...;ppx=...;model=...;coeffs=..." as a CameraInfo. Throws ros::WireError when it is
-/// damaged.
-msg::CameraInfo sdk_camera_info(const RecordedMessage& message);
+/// The calibration on a topic of CameraInfo, of RealSense's texts or of Orbbec's stream profiles. Throws
+/// ros::WireError when it is damaged.
+msg::CameraInfo recorded_camera_info(recordings::Reader& recording, const std::string& topic);
 
 /// The unit of 16-bit depth; empty when none is recorded. Throws SourceError for one that cannot be.
 std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth_topic);
 
-/// T_color_depth: for each stream it is recorded how points come from a reference stream (of the number at the end of
-/// the topic) into it. Empty for the topics of others.
+/// T_color_depth. RealSense records for each stream how points come from a reference stream (of the number at the end
+/// of the topic) into it, Orbbec how those of depth, which is seen from the infrared camera, come into colour. Empty
+/// for the topics of others.
 std::optional<Eigen::Isometry3d> sdk_extrinsics(recordings::Reader& recording, const std::string& color_topic,
                                                 const std::string& depth_topic);
 

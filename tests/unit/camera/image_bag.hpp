@@ -48,6 +48,11 @@ class ImageBag {
     const std::vector<std::uint8_t> bytes = ros::encode<ros::Wire::kRos1>(message);
     writer_.message(id(topic, type), static_cast<std::int64_t>(recorded_s * 1e9), bytes);
   }
+  /// Of a type that only the bag defines.
+  void add_defined(const std::string& topic, const std::string& type, const std::string& definition,
+                   const std::vector<std::uint8_t>& bytes, double recorded_s) {
+    writer_.message(writer_.connection(topic, type, definition), static_cast<std::int64_t>(recorded_s * 1e9), bytes);
+  }
   void add_info(const msg::CameraInfo& info = camera_info()) { add(kInfo, "sensor_msgs/CameraInfo", info, 0.5); }
   void add_color(double stamp_s, const cv::Mat& pixels = color(), const std::string& encoding = "bgr8") {
     add(kColor, "sensor_msgs/Image", image(pixels, encoding, stamp_s), stamp_s + 0.001);

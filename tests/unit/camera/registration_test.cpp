@@ -4,6 +4,10 @@
 // Recordings whose depth was taken by another camera than colour: registered, or refused with the reason.
 #include <gmock/gmock.h>
 
+#include <array>
+#include <bit>
+#include <opencv2/imgcodecs.hpp>
+
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/depth_figures.hpp"
 #include "common/geometry/transform_log.hpp"
@@ -131,6 +135,61 @@ TEST(Registration, a_realsense_sdk_bag_is_never_accepted_as_it_is) {
   const std::string uri = same_intrinsics.uri() + kSdkTopics;
   expect_refused(uri, AllOf(HasSubstr("frame '0'"), HasSubstr("?registered=1")));
   EXPECT_THAT(play(uri + "&registered=1"), SizeIs(1));
+}
+
+constexpr const char* kProfileDefinition =
+    "std_msgs/Header header\nuint8 streamType\nuint8 format\nfloat32[9] rotationMatrix\nfloat32[3] translationMatrix\n"
+    "uint16 width\nuint16 height\nuint16 fps\nfloat32[4] cameraIntrinsic\nfloat32[8] cameraDistortion\n"
+    "uint8 distortionModel\n";
+
+/// A stream profile as Orbbec's SDK 2 records it: 121 bytes.
+std::vector<std::uint8_t> orbbec_profile(const geometry::CameraModel& camera, const Eigen::Isometry3d& T_color_this) {
+  std::vector<std::uint8_t> bytes(18);
+  const auto add = [&bytes](auto value) {
+    const auto raw = std::bit_cast<std::array<std::uint8_t, sizeof(value)>>(value);
+    bytes.insert(bytes.end(), raw.begin(), raw.end());
+  };
+  const auto add_float = [&add](double value) { add(static_cast<float>(value)); };
+  for (const double value : T_color_this.linear().transpose().reshaped()) add_float(value);
+  for (const double value : T_color_this.translation()) add_float(1000 * value);
+  const auto& p = camera.parameters();
+  for (const int value : {p.width, p.height, 30}) add(static_cast<std::uint16_t>(value));
+  for (const double value : {p.fx, p.fy, p.cx, p.cy}) add_float(value);
+  for (const std::size_t i : {0, 1, 4, 5, 6, 7, 2, 3}) add_float(p.distortion[i]);
+  add(std::uint8_t{4});  // Brown-Conrady with six radial coefficients
+  return bytes;
+}
+
+void add_orbbec(ImageBag& bag, const TwoCameras& cameras, const Eigen::Isometry3d& T_color_depth) {
+  msg::Image color = cameras.color_image(1), depth = cameras.depth_image(1);
+  color.header.frame_id = depth.header.frame_id = "";
+  color.encoding = "mjpg";
+  cv::imencode(".jpg", cv::Mat(TwoCameras::kHeight, TwoCameras::kWidth, CV_8UC3, cv::Scalar(90, 90, 90)), color.data);
+  depth.encoding = "z16";
+  const auto profile = [&](const char* stream, const geometry::CameraModel& camera, const Eigen::Isometry3d& T) {
+    bag.add_defined(std::string("/cam/streamProfileType_") + stream, "custom_msg/OBStreamProfileInfo",
+                    kProfileDefinition, orbbec_profile(camera, T), 1);
+  };
+  profile("2", cameras.color, Eigen::Isometry3d(Eigen::Matrix4d::Zero()));
+  profile("3", cameras.depth, T_color_depth);
+  bag.add("/cam/sensor_6/frameType_8", kRosImage, cameras.color_image(1), 1);
+  bag.add("/cam/sensor_2/frameType_2", kRosImage, color, 1);
+  bag.add("/cam/sensor_3/frameType_3", kRosImage, depth, 1);
+}
+
+TEST(Registration, of_an_orbbec_sdk_bag_by_its_stream_profiles) {
+  const TwoCameras cameras;
+  ImageBag bag;
+  add_orbbec(bag, cameras, cameras.T_color_depth);
+  const auto frames = play(bag.uri());
+  ASSERT_THAT(frames, SizeIs(1));
+  EXPECT_NEAR(frames[0].image.color_bgr.at<cv::Vec3b>(20, 20)[0], 90, 2);
+  EXPECT_LT(difference_px(frames[0].image.camera, cameras.color), 1e-3);
+  EXPECT_NEAR(frames[0].image.camera.parameters().distortion[2], 0.001, 1e-6);
+  cameras.expect_registered(frames[0].image);
+  ImageBag without_color;
+  add_orbbec(without_color, cameras, Eigen::Isometry3d(Eigen::Matrix4d::Zero()));
+  expect_refused(without_color.uri(), HasSubstr("the transform between the two frames"));
 }
 
 TEST(Registration, depth_in_another_frame_without_a_transform_or_an_info_is_refused) {
