@@ -100,7 +100,6 @@ void require_keys(const std::map<std::string, double>& values, const std::string
 Calibration from_values(std::map<std::string, double> values, const std::string& origin,
                         LensModel lens = LensModel::kBrownConrady) {
   require_keys(values, origin);
-  check_frame_size(values["width"], values["height"], origin);
   geometry::CameraModel::Parameters parameters;
   parameters.fx = values["fx"];
   parameters.fy = values["fy"];
@@ -174,10 +173,19 @@ std::optional<KnownCamera> known_camera(const std::string& name) {
 }  // namespace
 
 void apply(const Calibration& calibration, SourceInfo& info) {
+  check_frame_size(calibration.camera.parameters().width, calibration.camera.parameters().height, calibration.origin);
   info.camera = calibration.camera;
   if (calibration.depth_factor_given || info.depth_scale_m <= 0) info.depth_scale_m = calibration.depth_scale_m;
   info.readout_s = calibration.readout_s;
   info.depth_offset_s = calibration.depth_offset_s;
+}
+
+cv::Size size_in_frame(cv::Size image_px) {
+  constexpr int kSide = msg::kMaxFrameSide;
+  for (int n = 1;; ++n) {
+    const cv::Size part(image_px.width / n, image_px.height / n);
+    if (std::max(part.width, part.height) <= kSide && std::size_t(part.area()) <= msg::kMaxFramePixels) return part;
+  }
 }
 
 void check_frame_size(double width, double height, const std::string& origin) {

@@ -29,7 +29,7 @@ struct Calibration {
 /// Reads "key: value" lines with the keys width height fx fy cx cy (needed) fisheye k1 k2 p1 p2 k3 k4 k5 k6
 /// depth_factor fps readout_s depth_offset_s, or a form of calibration_forms.hpp. `image_px` is the size where the text
 /// has none. Throws SourceError naming `origin`, line and fix: unknown or doubled key, not a finite number, out of
-/// range, size above the frame type's or not known.
+/// range, size not known.
 Calibration parse_calibration(const std::string& text, const std::string& origin,
                               std::optional<cv::Size> image_px = std::nullopt);
 
@@ -45,8 +45,11 @@ Calibration make_calibration(const std::map<std::string, double>& values, const 
 
 struct SourceInfo;
 /// What the calibration says about a source; neither its rate nor anything else changes. A depth unit that is known
-/// stays unless the calibration gives one.
+/// stays unless the calibration gives one. Throws SourceError for a size above the frame type's.
 void apply(const Calibration& calibration, SourceInfo& info);
+
+/// Of images of so many pixels what a frame carries: all, else the most with a whole number as one in each direction.
+cv::Size size_in_frame(cv::Size image_px);
 
 /// Throws SourceError naming `origin` for images larger than the frame type.
 void check_frame_size(double width_px, double height_px, const std::string& origin);

@@ -73,24 +73,14 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// Stray Scanner's frames have 1920 x 1440 px, more than a frame may: half of it.
+/// Half of the 1920 x 1440 px, as a frame may not have so many.
 std::string advice_for_stray_scanner(const fs::path& folder) {
   std::error_code none;
-  if (!fs::exists(folder / "rgb.mp4", none) || !fs::is_directory(folder / "depth", none)) return {};
-  std::vector<double> m;
-  try {
-    for (const io::TextLine& line :
-         io::split_lines(io::read_file(folder / "camera_matrix.csv", io::kCalibration, folder), ", \t\r"))
-      for (const std::string& field : line.fields) m.push_back(io::parse_number(field).value_or(0));
-  } catch (const io::IoError&) {
-  }
-  if (m.size() != 9) return {};
-  const std::string name = folder.string();
+  if (!fs::exists(folder / "rgb.mp4", none) || !fs::exists(folder / "camera_matrix.csv", none)) return {};
   return fmt::format(
       "{0} is a recording of Stray Scanner, whose colour is a video: take its frames out (mkdir {0}/rgb; ffmpeg -i "
-      "{0}/rgb.mp4 -vf scale=iw/2:ih/2 -start_number 0 {0}/rgb/%06d.png), and use "
-      "'{0}?intrinsics={1:.6g},{2:.6g},{3:.6g},{4:.6g}&fps=60' with the rate of its video",
-      name, m[0] / 2, m[4] / 2, (m[2] + 0.5) / 2 - 0.5, (m[5] + 0.5) / 2 - 0.5);
+      "{0}/rgb.mp4 -vf scale=iw/2:ih/2 -start_number 0 {0}/rgb/%06d.png) and give the folder again",
+      folder.string());
 }
 
 }  // namespace

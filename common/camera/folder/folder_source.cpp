@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "common/camera/calibration_forms.hpp"
@@ -167,6 +168,8 @@ void FolderSource::read_pairs() {
     list_ = read_two_lists(contents_.folder, contents_.color_list, contents_.depth_list, rules);
   } else {
     list_ = pair_by_names(contents_.color, contents_.depth, options_.tolerance_ns);
+    for (const std::string& table : find_files(contents_, contents_.layout->stamps))
+      if (list_.numbered && !rules.count_frames) apply_table(list_, contents_.folder / table, rules);
   }
   for (SkippedInput& input : list_.skipped) skips_.add(std::move(input));
   skips_.counters().depth_alone = list_.depth_alone;
@@ -203,12 +206,15 @@ FolderSource::FirstImages FolderSource::look_at_first_images() const {
 std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages& first) const {
   const fs::path& folder = contents_.folder;
   if (options_.calibration.has_camera()) return requested_calibration(options_.calibration, folder, first.color_px);
+  const auto& [fx, fy, cx, cy, width, height] = contents_.layout->camera;
+  const bool smaller = fx == 0 && first.color_px && first.color_px->width < width;  // than where the camera is given
+  const std::optional<cv::Size> unsaid_px =
+      smaller ? cv::Size(static_cast<int>(width), static_cast<int>(height)) : first.color_px;
   for (const std::string files : {"calibration.yaml", contents_.layout->calibration})
     for (const std::string& file : find_files(contents_, files))
-      return read_calibration(folder / file, first.color_px, contents_.below(file));
+      return read_calibration(folder / file, unsaid_px, contents_.below(file));
   if (auto known = known_calibration(folder)) return known;
   if (auto found = calibration_by_name(contents_, first.color_px)) return found;
-  const auto& [fx, fy, cx, cy, width, height] = contents_.layout->camera;
   const std::string origin = std::string("all of ") + contents_.layout->name;
   if (fx == 0) return std::nullopt;
   return make_calibration({{"fx", fx}, {"fy", fy}, {"cx", cx}, {"cy", cy}, {"width", width}, {"height", height}},
@@ -217,24 +223,31 @@ std::optional<Calibration> FolderSource::calibration_of_files(const FirstImages&
 
 void FolderSource::calibrate(const FirstImages& first) {
   const std::optional<Calibration> found = calibration_of_files(first);
-  const Calibration calibration = found ? *found : required_calibration(contents_, info_.uri);
-  apply(calibration, info_);
+  Calibration calibration = found ? *found : required_calibration(contents_, info_.uri);
   y_up_ = calibration.y_up;
-  note(fmt::format("camera: {} by {}", camera_text(info_.camera), inside(contents_.folder, calibration.origin)));
+  note(fmt::format("camera: {} by {}", camera_text(calibration.camera), inside(contents_.folder, calibration.origin)));
   if (y_up_) {
     note(
         "fy is negative: the y axis of ICL-NUIM's camera points up. Images are the same, so the positive value is "
         "taken; "
         "true poses are mirrored into a camera whose y axis points down");
   }
-  if (first.color_px && *first.color_px != size_of(info_.camera) &&
-      same_shape(*first.color_px, size_of(info_.camera))) {
-    info_.camera = scaled(info_.camera, *first.color_px);
-    note(fmt::format("its images have {} px: scaled to {}", size_text(*first.color_px), camera_text(info_.camera)));
-  }
+  if (first.color_px) fit(calibration.camera, *first.color_px);
+  apply(calibration, info_);
   choose_depth_unit(calibration, first);
   align_depth(first);
   set_times(calibration);
+}
+
+/// The camera of the images, or of what a frame carries of them.
+void FolderSource::fit(geometry::CameraModel& camera, cv::Size image_px) {
+  const cv::Size frame_px = size_in_frame(image_px);
+  if (!same_shape(image_px, size_of(camera))) return;
+  if (frame_px != image_px) large_px_ = image_px;
+  if (image_px == size_of(camera) && large_px_.empty()) return;
+  camera = scaled(camera, frame_px);
+  note(fmt::format("its images have {} px{}: scaled to {}", size_text(image_px),
+                   large_px_.empty() ? "" : ", more than a frame carries", camera_text(camera)));
 }
 
 void FolderSource::choose_depth_unit(const Calibration& calibration, const FirstImages& first) {
@@ -357,6 +370,8 @@ std::optional<SourceFrame> FolderSource::decode() {
   ImageRead depth = color.problem ? ImageRead{} : read_depth_units(pair.depth.file);
   std::optional<SkippedInput> problem = color.problem ? color.problem : depth.problem;
   if (!problem) {
+    if (color.image.size() == large_px_)
+      cv::resize(color.image, color.image, size_of(info_.camera), 0, 0, cv::INTER_AREA);
     check_frame_size(color.image.cols, color.image.rows, (contents_.folder / pair.color.file).string());
     problem = size_mismatch(pair.color.file, color.image, depth.image, info_.camera);
   }

@@ -48,6 +48,7 @@ class FolderSource final : public PlayedSource {
   void read_pairs();
   FirstImages look_at_first_images() const;
   void calibrate(const FirstImages& first);
+  void fit(geometry::CameraModel& camera, cv::Size image_px);
   std::optional<Calibration> calibration_of_files(const FirstImages& first) const;
   void choose_depth_unit(const Calibration& calibration, const FirstImages& first);
   void choose_float_unit(const cv::Mat& values);
@@ -65,6 +66,7 @@ class FolderSource final : public PlayedSource {
   double float_step_ = 0;                ///< of depth in floats: what becomes a unit, in the unit of the floats
   bool y_up_ = false, rotated_ = false;  ///< rotated_: is_rotated()
   std::optional<vision::DepthRegistration> registration_;
+  cv::Size large_px_;  ///< of colour images that are scaled down to the camera's size
   geometry::Trajectory groundtruth_;
 };
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -324,6 +325,26 @@ PairList pair_by_names(const std::vector<std::string>& color, const std::vector<
   std::vector<StampedFile> depth_sorted = depths.files;
   sort_unique(depth_sorted);
   return pair_in_order(files_of(sorted), files_of(depth_sorted));
+}
+
+void apply_table(PairList& list, const fs::path& table, const ListRules& rules) {
+  std::map<std::int64_t, std::int64_t> times_ns;
+  for (const io::TextLine& line : read_lines(table, rules)) {
+    const std::vector<std::string> columns = columns_of(line);
+    if (columns.size() < 2) continue;
+    const auto time_ns = stamp_of(columns[0], at_line(table, line.number));
+    const auto number = stamp_of(columns[1], at_line(table, line.number));
+    if (time_ns && number) times_ns[*number] = *time_ns;
+  }
+  std::vector<FilePair> timed = list.pairs;
+  for (FilePair& pair : timed) {
+    const auto time = times_ns.find(pair.color.stamp_ns);
+    if (time == times_ns.end()) return;
+    pair.color.stamp_ns = pair.depth.stamp_ns = time->second;
+  }
+  list.pairs = increasing(timed, list.skipped);
+  list.numbered = false;
+  list.how += ", at the times of " + table.filename().string();
 }
 
 void apply_rate(PairList& list, double fps) {

@@ -56,6 +56,10 @@ PairList read_pairs(const std::filesystem::path& folder, const ListRules& rules 
 PairList pair_by_names(const std::vector<std::string>& color, const std::vector<std::string>& depth,
                        std::int64_t tolerance_ns = kPairingToleranceNs);
 
+/// Gives numbered frames the times of a table whose lines begin with "time, number"; they stay numbered when it lacks
+/// one of them. Throws SourceError as read_associations().
+void apply_table(PairList& list, const std::filesystem::path& table, const ListRules& rules);
+
 /// Gives numbered frames times: the first at 0, `fps` of them a second.
 void apply_rate(PairList& list, double fps);
 

@@ -33,7 +33,8 @@ struct Layout {
   double fps = 30;                 ///< of frames without times, Hz
   std::array<double, 6> camera{};  ///< fx fy cx cy width height that all such data have; else 0
   PoseAxes axes = PoseAxes::kOptical;
-  const char* note = "";  ///< what must be known
+  const char* note = "";    ///< what must be known
+  const char* stamps = "";  ///< a table "time, number" of numbered frames
 };
 
 /// A folder and what its layout found in it; files are relative to it.

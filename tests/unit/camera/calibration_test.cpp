@@ -68,7 +68,8 @@ TEST(Calibration, refuses_with_key_line_and_fix) {
 }
 
 TEST(Calibration, refuses_sizes_that_no_frame_type_carries) {
-  EXPECT_THAT([] { parse_calibration(SequenceFolder::calibration(1920, 1440), "cal.yaml"); },
+  SourceInfo info;
+  EXPECT_THAT([&] { apply(parse_calibration(SequenceFolder::calibration(1920, 1440), "cal.yaml"), info); },
               ThrowsMessage<SourceError>(
                   AllOf(HasSubstr("1920 x 1440"), HasSubstr("at most 1920 x 1200"), HasSubstr("scale"))));
 }

@@ -37,26 +37,26 @@ TEST_P(FieldInputs, are_played_or_refused_with_help) {
 
 INSTANTIATE_TEST_SUITE_P(
     OfOthers, FieldInputs,
-    testing::Values(
-        FieldInput{"message_mode_without_metadata/bag_0.db3", "", 6},
-        FieldInput{"message_mode_without_metadata/bag_0.mcap", "", 6},
-        FieldInput{"realsense_sdk_db3_compressed/rec.db3", "", 6}, FieldInput{"every_image_twice/a.mcap", "", 6},
-        FieldInput{"two_cameras_one_topic/a.mcap", "", 10}, FieldInput{"backslash_list/seq", "", 6},
-        FieldInput{"binning_and_roi/binning.mcap", "", 6}, FieldInput{"binning_and_roi/roi.mcap", "", 6},
-        FieldInput{"infrared_only/a.mcap", "", 6}, FieldInput{"nv12_nv21/nv12.mcap", "", 6},
-        FieldInput{"nv12_nv21/nv21.mcap", "", 6}, FieldInput{"tartanair_v2/seq", "?intrinsics=262,262,159.5,119.5", 6},
-        FieldInput{"zstd_image_transport/a.mcap", "", 6},
-        FieldInput{"orbbec_viewer_bag/orbbec.bag", "", 0, {"/cam/sensor_3/frameType_3", "?registered=1"}},
-        FieldInput{"orbbec_viewer_bag/orbbec.bag", "?registered=1", 4},
-        FieldInput{"portrait_images/seq", "", 0, {"turned by 90 degrees", "262,262,119.5,159.5"}},
-        FieldInput{"rs_convert_coloured_depth/clip",
-                   "?intrinsics=262,262,159.5,119.5",
-                   0,
-                   {"colours are for people", "rs-convert -r"}},
-        FieldInput{
-            "stray_scanner/recorded", "", 0, {"Stray Scanner", "ffmpeg -i", "?intrinsics=786,786,478.25,358.25"}},
-        FieldInput{"video_in_recording/ffmpeg.mcap", "", 0, {"FFMPEGPacket", "republish"}},
-        FieldInput{"video_in_recording/video.mcap", "", 0, {"CompressedVideo", "republish"}}));
+    testing::Values(FieldInput{"message_mode_without_metadata/bag_0.db3", "", 6},
+                    FieldInput{"message_mode_without_metadata/bag_0.mcap", "", 6},
+                    FieldInput{"realsense_sdk_db3_compressed/rec.db3", "", 6},
+                    FieldInput{"every_image_twice/a.mcap", "", 6}, FieldInput{"two_cameras_one_topic/a.mcap", "", 10},
+                    FieldInput{"backslash_list/seq", "", 6}, FieldInput{"binning_and_roi/binning.mcap", "", 6},
+                    FieldInput{"binning_and_roi/roi.mcap", "", 6}, FieldInput{"infrared_only/a.mcap", "", 6},
+                    FieldInput{"nv12_nv21/nv12.mcap", "", 6}, FieldInput{"nv12_nv21/nv21.mcap", "", 6},
+                    FieldInput{"tartanair_v2/seq", "?intrinsics=262,262,159.5,119.5", 6},
+                    FieldInput{"zstd_image_transport/a.mcap", "", 6},
+                    FieldInput{"orbbec_viewer_bag/orbbec.bag", "", 0, {"/cam/sensor_3/frameType_3", "?registered=1"}},
+                    FieldInput{"orbbec_viewer_bag/orbbec.bag", "?registered=1", 4},
+                    FieldInput{"portrait_images/seq", "", 0, {"turned by 90 degrees", "262,262,119.5,159.5"}},
+                    FieldInput{"rs_convert_coloured_depth/clip",
+                               "?intrinsics=262,262,159.5,119.5",
+                               0,
+                               {"colours are for people", "rs-convert -r"}},
+                    FieldInput{"stray_scanner/recorded", "", 0, {"Stray Scanner", "ffmpeg -i", "-start_number 0"}},
+                    FieldInput{"stray_scanner/frames", "", 6},
+                    FieldInput{"video_in_recording/ffmpeg.mcap", "", 0, {"FFMPEGPacket", "republish"}},
+                    FieldInput{"video_in_recording/video.mcap", "", 0, {"CompressedVideo", "republish"}}));
 
 }  // namespace
 }  // namespace rtd::camera

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 /// Datasets and capture scripts rebuilt small: names of files and forms of texts are theirs.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -381,6 +382,33 @@ TEST(Layouts, depth_of_another_size_is_scaled_and_so_is_a_calibration) {
   ASSERT_TRUE(frame);
   EXPECT_NEAR(metres(*frame, 50, 50), 2, 1e-3);
   EXPECT_GT(cv::countNonZero(frame->image.depth), 128 * 96 * 9 / 10);
+}
+
+/// The matrix is that of the app's 1920 x 1440 px, however ffmpeg scaled the images.
+TEST(Layouts, stray_scanners_frames_have_times_and_are_scaled_with_their_camera) {
+  for (const int width : {1920, 960, 640}) {
+    const DataFolder folder;
+    std::string table = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
+    for (int i = 0; i < 3; ++i) {
+      folder.color("rgb/" + number(i, 6) + ".png", width, width * 3 / 4);
+      folder.depth("depth/" + number(i, 6) + ".png", 2000, 256, 192);
+      table += fmt::format("{}.5, {}, 0, 0, 0, 0, 0, 0, 1\n", 1000 + i * i, number(i, 6));
+    }
+    folder.write("camera_matrix.csv", "1572.0, 0.0, 957.0\n0.0, 1572.0, 717.0\n0.0, 0.0, 1.0\n");
+    folder.write("odometry.csv", table);
+    const auto source = make_source(folder.uri());
+    EXPECT_THAT(notes_of(*source), AllOf(HasSubstr("for Stray Scanner: 3 pairs by the numbers in their names, at the "
+                                                   "times of odometry.csv"),
+                                         HasSubstr(width > 1000 ? "more than a frame carries" : "its images have")));
+    const auto frames = test::play(folder.uri());
+    ASSERT_THAT(frames, SizeIs(3));
+    EXPECT_EQ(frames[2].image.stamp_ns, 1'004'500'000'000);
+    EXPECT_EQ(frames[2].image.color_bgr.cols, width > 1000 ? 960 : width);
+    const auto& camera = frames[2].image.camera.parameters();
+    EXPECT_DOUBLE_EQ(camera.fx / camera.width, 1572.0 / 1920);
+    EXPECT_DOUBLE_EQ((camera.cx + 0.5) / camera.width, 957.5 / 1920);
+    EXPECT_NEAR(metres(frames[2], 50, 50), 2, 1e-3);
+  }
 }
 
 TEST(Layouts, floats_are_metres_or_millimetres_by_their_size) {
