@@ -22,6 +22,7 @@ constexpr std::array kEncodings = {ColorEncoding{"rgb8", CV_8UC3, cv::COLOR_RGB2
                                    ColorEncoding{"rgba16", CV_16UC4, cv::COLOR_RGBA2BGR},
                                    ColorEncoding{"bgra16", CV_16UC4, cv::COLOR_BGRA2BGR},
                                    ColorEncoding{"mono16", CV_16UC1, cv::COLOR_GRAY2BGR},
+                                   ColorEncoding{"16UC1", CV_16UC1, cv::COLOR_GRAY2BGR},
                                    ColorEncoding{"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
                                    ColorEncoding{"8UC3", CV_8UC3, kAsItIs},
                                    ColorEncoding{"8UC4", CV_8UC4, cv::COLOR_BGRA2BGR},
@@ -53,11 +54,12 @@ cv::Mat yuyv_of_nv24(const cv::Mat& planes) {
   return yuyv;
 }
 
-/// A view, or the upper bytes of 16-bit pixels.
-cv::Mat eight_bit(const cv::Mat& pixels) {
+/// A view, or the upper eight of so many bits.
+cv::Mat eight_bit(const cv::Mat& pixels, int bits) {
   if (pixels.depth() == CV_8U) return pixels;
+  const double step = 1 << (bits - 8);
   cv::Mat upper;
-  pixels.convertTo(upper, CV_8U, 1.0 / 256, -127.5 / 256);  // convertTo() rounds
+  pixels.convertTo(upper, CV_8U, 1 / step, (1 - step) / (2 * step));  // convertTo() rounds
   return upper;
 }
 
@@ -86,8 +88,8 @@ std::string size_defect(const ColorEncoding& encoding, cv::Size size_px) {
   return "it needs 3 x 3 px";
 }
 
-cv::Mat to_bgr(const ColorEncoding& encoding, const cv::Mat& pixels) {
-  const cv::Mat eight = encoding.name == "nv24" ? yuyv_of_nv24(pixels) : eight_bit(pixels);
+cv::Mat to_bgr(const ColorEncoding& encoding, const cv::Mat& pixels, int bits) {
+  const cv::Mat eight = encoding.name == "nv24" ? yuyv_of_nv24(pixels) : eight_bit(pixels, bits);
   cv::Mat bgr;
   if (encoding.conversion == kAsItIs) {
     eight.copyTo(bgr);

@@ -31,8 +31,9 @@ std::string known_color_encodings();
 /// Why pixels of this encoding cannot have this size; empty when they can.
 std::string size_defect(const ColorEncoding& encoding, cv::Size size_px);
 
-/// CV_8UC3 BGR of pixels of the encoding's type; of 16 bits the upper eight are kept. YUV is BT.601 of limited range,
+/// CV_8UC3 BGR of pixels of the encoding's type; of values of more than 8 bits (`bits`, 9 to 16; larger values are
+/// white) the upper eight are kept. YUV is BT.601 of limited range,
 /// as in cv_bridge. The size must have no size_defect().
-cv::Mat to_bgr(const ColorEncoding& encoding, const cv::Mat& pixels);
+cv::Mat to_bgr(const ColorEncoding& encoding, const cv::Mat& pixels, int bits = 16);
 
 }  // namespace rtd::camera

@@ -104,9 +104,10 @@ std::string no_stamps(const std::string& topic, const std::string& instead) {
   return fmt::format("the stamps on {} are all 0, the driver does not fill header.stamp: {} are used", topic, instead);
 }
 
-std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, int grey_bits, double float_unit_m,
+                                       const SourceInfo& info,
                                        const std::optional<vision::DepthRegistration>& registration, SkipLog& skips) {
-  ImageRead color = decode_color(pair.color.message);
+  ImageRead color = decode_color(pair.color.message, grey_bits);
   if (color.problem) {
     skips.add(*color.problem);
     return std::nullopt;

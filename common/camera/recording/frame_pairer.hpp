@@ -64,9 +64,10 @@ class FramePairer {
 /// "the stamps on TOPIC are all 0 ...": a remark; `instead` is what takes their place.
 std::string no_stamps(const std::string& topic, const std::string& instead);
 
-/// The frame that a pair makes, depth in floats rounded to float_unit_m, then registered unless it is already; empty,
-/// and counted, when it cannot be decoded or its sizes do not fit.
-std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, double float_unit_m, const SourceInfo& info,
+/// The frame that a pair makes, 16-bit grey of so many bits, depth in floats rounded to float_unit_m, then registered
+/// unless it is already; empty, and counted, when it cannot be decoded or its sizes do not fit.
+std::optional<SourceFrame> decode_pair(const FramePairer::Pair& pair, int grey_bits, double float_unit_m,
+                                       const SourceInfo& info,
                                        const std::optional<vision::DepthRegistration>& registration, SkipLog& skips);
 
 }  // namespace rtd::camera

@@ -103,6 +103,7 @@ class ImagePairs final : public RecordingSource {
   ImageOrigin color_, depth_;
   double float_step_;                  ///< of depth in floats: what becomes a unit, in the unit of the floats
   bool floats_ = false;                ///< depth is in floats
+  int grey_bits_ = 16;                 ///< of 16-bit grey
   bool by_time_of_recording_ = false;  ///< frames have it in place of their stamps
   std::optional<vision::DepthRegistration> registration_;
   FramePairer pairer_;
@@ -142,6 +143,8 @@ void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   color_.size_px = color_image.image.size();
   info_.frame_id = place_named(color_.frame_id);
   depth_ = {topics_.depth, ros::decode<msg::Header>(depth.wire, depth.bytes).frame_id, depth_image.image.size(), {}};
+  if (grey_bits_ = grey_bits(color); grey_bits_ < 16)
+    info_.notes.push_back(fmt::format("{}: of {} bits of grey the upper eight are used", topics_.color, grey_bits_));
   for (const ImageRead* image : {&color_image, &depth_image}) {
     if (!image->remark.empty()) info_.remarks.push_back(image->remark);
   }
@@ -275,7 +278,7 @@ void ImagePairs::take(RecordedMessage message) {
 
 std::optional<SourceFrame> ImagePairs::decode() {
   take_damages();
-  return decode_pair(*std::exchange(pair_, std::nullopt), float_step_, info_, registration_, skips_);
+  return decode_pair(*std::exchange(pair_, std::nullopt), grey_bits_, float_step_, info_, registration_, skips_);
 }
 
 geometry::Trajectory ImagePairs::groundtruth() const {

@@ -5,17 +5,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/folder/depth_formats.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/lens_models.hpp"
 #include "common/camera/recording/color_encodings.hpp"
+#include "common/camera/recording/rvl.hpp"
 #include "common/io/printable.hpp"
 #include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
@@ -24,68 +27,6 @@ namespace rtd::camera {
 namespace {
 
 constexpr const char* kDepthTransport = "compressedDepth";
-constexpr std::uint64_t kMaxPixels = 1U << 24;  // a run of zeros costs nothing: memory needs a limit of its own
-
-/// The numbers of variable length.
-class RvlNumbers {
- public:
-  explicit RvlNumbers(ros::ByteCursor cursor) : cursor_(cursor) {}
-
-  std::uint32_t next() {
-    constexpr unsigned kBits = 3, kMore = 8, kMaxShift = 27;  // 30 bits are more than any run or difference needs
-    std::uint32_t value = 0;
-    for (unsigned shift = 0;; shift += kBits) {
-      if (shift > kMaxShift) throw ros::WireError("RVL: a number is too long" + place());
-      const unsigned nibble = next_nibble();
-      value |= (nibble & (kMore - 1)) << shift;
-      if ((nibble & kMore) == 0) return value;
-    }
-  }
-
-  std::string place() const { return " before byte " + std::to_string(cursor_.position()); }
-
- private:
-  unsigned next_nibble() {
-    if (left_ == 0) {
-      word_ = cursor_.read<std::uint32_t>();
-      left_ = 8;
-    }
-    const unsigned nibble = word_ >> 28;
-    word_ <<= 4;
-    --left_;
-    return nibble;
-  }
-
-  ros::ByteCursor cursor_;
-  std::uint32_t word_ = 0;
-  int left_ = 0;  ///< nibbles in the word
-};
-
-/// 0, -1, 1, -2, ... are 0, 1, 2, 3, ...
-std::uint16_t add_difference(std::uint16_t previous, std::uint32_t number) {
-  const std::uint32_t difference = (number >> 1) ^ (0U - (number & 1U));  // modulo 2^32, as the sum modulo 2^16
-  return static_cast<std::uint16_t>(previous + difference);
-}
-
-/// The first pixels of `left` that a run takes.
-std::span<std::uint16_t> take_run(std::span<std::uint16_t>& left, RvlNumbers& numbers) {
-  const std::uint32_t length = numbers.next();
-  if (length > left.size()) {
-    throw ros::WireError("RVL: a run of " + std::to_string(length) + " pixels, where " + std::to_string(left.size()) +
-                         " are left" + numbers.place());
-  }
-  const std::span<std::uint16_t> run = left.first(length);
-  left = left.subspan(length);
-  return run;
-}
-
-void fill_image(std::span<std::uint16_t> left, RvlNumbers& numbers) {
-  std::uint16_t previous = 0;
-  while (!left.empty()) {
-    std::ranges::fill(take_run(left, numbers), std::uint16_t{0});
-    for (std::uint16_t& value : take_run(left, numbers)) value = previous = add_difference(previous, numbers.next());
-  }
-}
 
 /// depth = a / (pixel - b), 0 = no measurement.
 cv::Mat from_inverse(const cv::Mat& pixels, float a, float b) {
@@ -170,10 +111,15 @@ std::string remark_on(const RecordedMessage& message, const msg::Image& image, i
          std::to_string(row_bytes(image, type)) + ": rows without gaps are read";
 }
 
-ImageRead raw_color(const RecordedMessage& message, msg::Image image) {
+bool is_grey16(const RecordedMessage& message, const msg::Image& image) {
+  return image.encoding == "mono16" || (image.encoding == "16UC1" && !named_as_depth(message.topic));
+}
+
+ImageRead raw_color(const RecordedMessage& message, msg::Image image, int grey_bits) {
   if (image.encoding == kJpeg) return decode_color(image.data, name_of(message));
   const ColorEncoding* const encoding = find_color_encoding(image.encoding);
-  if (encoding == nullptr) throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
+  if (encoding == nullptr || (encoding->name == "16UC1" && !is_grey16(message, image)))
+    throw unsupported(message, image.encoding, known_color_encodings() + ", JPEG, PNG");
   if (image.is_bigendian != 0 && CV_MAT_DEPTH(encoding->type) != CV_8U) {
     throw unsupported(message, image.encoding + ", big endian", "little endian");
   }
@@ -182,7 +128,7 @@ ImageRead raw_color(const RecordedMessage& message, msg::Image image) {
   if (const std::string defect = size_defect(*encoding, pixels.size()); !defect.empty()) {
     throw ros::WireError("an image of " + size_text(pixels.size()) + " px in " + image.encoding + ": " + defect);
   }
-  return {to_bgr(*encoding, pixels), {}, remark_on(message, image, encoding->type)};
+  return {to_bgr(*encoding, pixels, grey_bits), {}, remark_on(message, image, encoding->type)};
 }
 
 int depth_type(const RecordedMessage& message, const msg::Image& image) {
@@ -216,7 +162,8 @@ msg::Image unpacked(const msg::CompressedImage& packed) {
   const auto length = cursor.read<std::uint32_t>();
   image.encoding = ros::to_text(cursor.take(length));
   const std::uint64_t size = std::uint64_t{image.step} * image.height;
-  if (size > kMaxPixels * sizeof(float)) throw ros::WireError("zstd: an image of " + std::to_string(size) + " bytes");
+  if (size > kMaxRecordedPixels * sizeof(float))
+    throw ros::WireError("zstd: an image of " + std::to_string(size) + " bytes");
   const ros::Bytes pixels = cursor.take(cursor.remaining());
   image.data = inflate_at_most(pixels, size);
   if (image.data.size() != size) throw ros::WireError("zstd: the pixels are damaged");
@@ -286,9 +233,23 @@ std::string name_of(const RecordedMessage& message) {
   return message.topic + " recorded at " + std::to_string(message.recorded_ns) + " ns";
 }
 
-ImageRead decode_color(const RecordedMessage& message) {
+int grey_bits(const RecordedMessage& message) {
   try {
-    if (auto raw = raw_image(message)) return raw_color(message, std::move(*raw));
+    std::optional<msg::Image> image = raw_image(message);
+    if (!image || !is_grey16(message, *image)) return 16;
+    const cv::Mat pixels = view_of(*image, CV_16UC1);
+    std::vector<std::uint16_t> values(pixels.begin<std::uint16_t>(), pixels.end<std::uint16_t>());
+    const auto bright = values.begin() + static_cast<std::ptrdiff_t>(values.size() * 99 / 100);
+    std::ranges::nth_element(values, bright);
+    return std::max(8, static_cast<int>(std::bit_width(*bright)));
+  } catch (const ros::WireError&) {
+    return 16;  // decode_color() reports it
+  }
+}
+
+ImageRead decode_color(const RecordedMessage& message, int grey_bits) {
+  try {
+    if (auto raw = raw_image(message)) return raw_color(message, std::move(*raw), grey_bits);
     const auto image = ros::decode<msg::CompressedImage>(message.wire, message.bytes);
     return decode_color(image.data, name_of(message));
   } catch (const ros::WireError& error) {
@@ -303,18 +264,6 @@ ImageRead decode_depth(const RecordedMessage& message, double float_unit_m) {
   } catch (const ros::WireError& error) {
     return refuse(SkipReason::kDepthUnreadable, message, error.what());
   }
-}
-
-cv::Mat decode_rvl(ros::Bytes bytes) {
-  ros::ByteCursor cursor(bytes);
-  const auto width = cursor.read<std::uint32_t>(), height = cursor.read<std::uint32_t>();
-  if (width == 0 || height == 0 || std::uint64_t{width} * height > kMaxPixels) {
-    throw ros::WireError("RVL: an image of " + std::to_string(width) + " x " + std::to_string(height) + " px");
-  }
-  cv::Mat depth(static_cast<int>(height), static_cast<int>(width), CV_16UC1);
-  RvlNumbers numbers(cursor);
-  fill_image({depth.ptr<std::uint16_t>(), depth.total()}, numbers);
-  return depth;
 }
 
 double depth_unit_m(const RecordedMessage& message, double float_unit_m) {

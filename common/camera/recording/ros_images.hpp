@@ -25,20 +25,18 @@ std::string name_of(const RecordedMessage& message);
 
 /// sensor_msgs/Image (color_encodings.hpp: RGB, grey, YUV 4:2:2, Bayer) or CompressedImage (JPEG, PNG) as CV_8UC3 BGR.
 /// Throws SourceError for an encoding that cannot be read, naming it and those that can: it is the topic's, not the
-/// frame's.
-ImageRead decode_color(const RecordedMessage& message);
+/// frame's. Of 16-bit grey the upper eight of `grey_bits` become the image.
+ImageRead decode_color(const RecordedMessage& message, int grey_bits = 16);
+
+/// How many bits 16-bit grey (mono16, 16UC1) really has: those of all but the brightest hundredth of the pixels, 8 at
+/// least. Infrared of 10 or 12 bits would be black otherwise. To be found of a first image and kept: the same light is
+/// then the same grey. 16 for every other image.
+int grey_bits(const RecordedMessage& message);
 
 /// sensor_msgs/Image (16UC1, mono16, 32FC1) or CompressedImage (16-bit PNG, compressedDepth as PNG or RVL) as CV_16UC1,
 /// 0 = no measurement: NaN, infinity, saturation, nothing in front of the camera. Floats become units of float_unit_m;
 /// what does not fit is no measurement. Throws SourceError as above.
 ImageRead decode_depth(const RecordedMessage& message, double float_unit_m);
-
-/// A depth image in RVL (Wilson, "Fast Lossless Depth Image Compression", ISS 2017), as ROS's compressedDepth writes
-/// it: width and height as 32-bit numbers, then runs of zeros and of differences to the pixel before, as numbers of
-/// variable length: 3 bits in a nibble, lowest first, its top bit set when more follow; eight nibbles, highest first,
-/// in a 32-bit little-endian word. Gives CV_16UC1. Never reads outside the bytes; throws ros::WireError for an image of
-/// no or more than 2^24 pixels, runs beyond its end, numbers too long and bytes that end early.
-cv::Mat decode_rvl(ros::Bytes bytes);
 
 /// Metres of a unit of what decode_depth() makes of such a message. Throws SourceError and ros::WireError.
 double depth_unit_m(const RecordedMessage& message, double float_unit_m);

@@ -213,6 +213,7 @@ bool Ros2Device::check_first(const FramePairer::Pair& pair, const SourceInfo& kn
     const RecordedMessage &color = pair.color.message, &depth = pair.depth.message;
     unit_m_ = depth_unit_m(depth, kFloatDepthUnitM);
     float_step_ = float_step(depth, kFloatDepthUnitM);
+    grey_bits_ = grey_bits(color);
     const ImageRead color_image = decode_color(color), depth_image = decode_depth(depth, float_step_);
     color_origin_.topic = options_.topics.color;
     depth_origin_.topic = options_.topics.depth;
@@ -286,7 +287,7 @@ void Ros2Device::drop_waiting() {
 }
 
 ImageRead Ros2Device::decode(const DeviceMode& mode, const RecordedMessage& message) const {
-  if (mode.stream == Stream::kColor) return decode_color(message);
+  if (mode.stream == Stream::kColor) return decode_color(message, grey_bits_);
   ImageRead depth = decode_depth(message, float_step_);
   if (options_.registered) depth.image = scaled_to(color_origin_.size_px, depth.image);
   return depth;

@@ -92,6 +92,7 @@ class Ros2Device final : public LiveDevice {
   ImageOrigin color_origin_, depth_origin_;
   double unit_m_ = 0;                     ///< of depth
   double float_step_ = kFloatDepthUnitM;  ///< of depth in floats: what becomes a unit, in the unit of the floats
+  int grey_bits_ = 16;                    ///< of 16-bit grey, by the first image
   std::string unregistered_, lacking_;    ///< why depth must be registered, and what that lacks
   geometry::TransformLog lasting_transforms_, transforms_;
   std::optional<DepthCamera> depth_camera_;      ///< when depth is to be registered

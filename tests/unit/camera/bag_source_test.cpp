@@ -17,6 +17,7 @@ using test::play_all;
 using test::Played;
 using test::SequenceFolder;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -316,6 +317,32 @@ TEST(BagSource, the_left_infrared_camera_takes_the_place_of_colour) {
   const Played played = play_all(bag.uri());
   ASSERT_THAT(played.frames, SizeIs(1));
   EXPECT_EQ(played.frames[0].image.color_bgr.at<cv::Vec3b>(3, 3), cv::Vec3b(90, 90, 90));
+}
+
+/// A first image of 10 bits, dark but for a few pixels, and one with more light.
+TEST(BagSource, infrared_of_16_bits_is_scaled_as_its_first_image_needs_and_stays_so) {
+  for (const char* encoding : {"mono16", "16UC1"}) {
+    ImageBag bag;
+    for (const double stamp_s : {1.0, 1.1}) {
+      cv::Mat grey(24, 32, CV_16UC1, cv::Scalar(stamp_s > 1 ? 1500 : 600));
+      grey.at<std::uint16_t>(0, 0) = 65535;
+      grey.at<std::uint16_t>(3, 3) = 203;
+      bag.add("/kinect/ir/image_raw", "sensor_msgs/Image", ImageBag::image(grey, encoding, stamp_s), stamp_s);
+      bag.add("/kinect/depth/image_raw", "sensor_msgs/Image", ImageBag::image(ImageBag::depth(), "16UC1", stamp_s),
+              stamp_s);
+    }
+    bag.add("/kinect/ir/camera_info", "sensor_msgs/CameraInfo", ImageBag::camera_info(), 0.5);
+    const auto source = make_source(bag.uri());
+    EXPECT_THAT(source->info().notes, Contains(HasSubstr("of 10 bits of grey")));
+    const Played played = play_all(bag.uri());
+    ASSERT_THAT(played.frames, SizeIs(2));
+    const auto grey = [&](std::size_t frame, int at) {
+      return int{played.frames[frame].image.color_bgr.at<cv::Vec3b>(at, at)[0]};
+    };
+    EXPECT_EQ((std::array{grey(0, 3), grey(0, 9), grey(0, 0)}), (std::array{203 / 4, 600 / 4, 255}));
+    EXPECT_EQ((std::array{grey(1, 3), grey(1, 9)}), (std::array{203 / 4, 255}));
+    EXPECT_TRUE(refuses(bag.uri() + "?color=/kinect/depth/image_raw&depth=/kinect/depth/image_raw", {"'16UC1'"}));
+  }
 }
 
 TEST(BagSource, takes_a_calibration_of_its_own) {

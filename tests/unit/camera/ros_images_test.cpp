@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/recording/ros_images.hpp"
+#include "common/camera/recording/rvl.hpp"
 
 #include <gmock/gmock.h>
 
