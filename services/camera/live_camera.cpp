@@ -16,6 +16,7 @@
 #include <string>
 #include <utility>
 
+#include "common/bus/host/host_checks.hpp"
 #include "common/bus/topic_follower.hpp"
 #include "common/bus/topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -89,8 +90,7 @@ class Ros2Feed final : public LiveFeed {
   bus::RawHandlers handlers(const bus::RawTopic& topic);
   std::string without_publisher() const;
 
-  const std::uint32_t domain_;
-  const bool loopback_only_;
+  const bus::BusOptions options_;
   FirstPublisher color_publisher_, depth_publisher_;
   concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
@@ -121,8 +121,7 @@ std::string plain_dds_type(const bus::RawTopic& topic) {
 }
 
 Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
-    : domain_(options.domain),
-      loopback_only_(options.network.loopback_only),
+    : options_(options),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
       bus_(bus::connect_raw(options)),
       color_topic_(topics.color),
@@ -187,8 +186,11 @@ Ros2Feed::Publishers Ros2Feed::publishers(const std::string& topic) const {
 
 std::string Ros2Feed::state_of(const std::string& topic) const {
   const auto [readable, other_type] = publishers(topic);
-  if (readable > 0)
-    return fmt::format("{} of its type, but no message arrives", readable == 1 ? "one publisher" : "publishers");
+  if (readable > 0) {
+    const std::string closed = bus::why_not_shared_memory(options_, bus::read_host_limits());
+    return fmt::format("{} of its type, but no message arrives{}{}", readable == 1 ? "one publisher" : "publishers",
+                       closed.empty() ? "" : "; ", closed);
+  }
   if (!other_type.empty()) return fmt::format("it is published as {}, which is not read here", other_type);
   return without_publisher();
 }
@@ -200,10 +202,10 @@ std::string Ros2Feed::without_publisher() const {
     if (is_ours(writer.topic.name)) continue;
     if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
   }
-  const std::string where = fmt::format("it has no publisher in DDS domain {}", domain_);
+  const std::string where = fmt::format("it has no publisher in DDS domain {}", options_.domain);
   if (!images.empty()) return fmt::format("{}; images are published on {}", where, fmt::join(images, ", "));
   return fmt::format("{}{}, and neither has any image topic; does the driver run, and in this ROS_DOMAIN_ID?", where,
-                     loopback_only_ ? " on this host (--profile lan: also on the network)" : "");
+                     options_.network.loopback_only ? " on this host (--profile lan: also on the network)" : "");
 }
 
 /// The time of this host.

@@ -174,11 +174,11 @@ const ParticipantId& server_id() {
   return kId;
 }
 
-void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
+void map_network(const BusOptions& options, bool in_shared_memory, const HostLimits& limits, DiscoveryScope scope,
                  dds::DomainParticipantQos& qos) {
   const std::string rings = options.shared_memory && options.uses_rings ? ring_folder(options.rings) : "";
   qos.transport().use_builtin_transports = false;
-  if (options.shared_memory) qos.transport().user_transports.push_back(as_received(shared_memory_transport(options)));
+  if (in_shared_memory) qos.transport().user_transports.push_back(as_received(shared_memory_transport(options)));
   qos.transport().user_transports.push_back(std::make_shared<ScreeningDescriptor>(
       udp_transport(options, limits), datagram_bytes(options), RingClaims(rings, ring_id(rings)), options.on_problem));
   // Discovery over UDP only, samples over shared memory: the kernel closes the socket of a killed process at once.

@@ -14,9 +14,10 @@ enum class DiscoveryScope {
   kAll,       ///< all of the domain: recorders, tools
 };
 
-/// Transports and discovery of NetworkOptions. Samples of a host go through shared memory in every profile; UDP on
-/// loopback and the chosen interfaces is for discovery and for other hosts, cut to max_datagram_bytes.
-void map_network(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope,
+/// Transports and discovery of NetworkOptions. Samples of a host go through shared memory in every profile, unless
+/// `in_shared_memory` is false; UDP on loopback and the chosen interfaces is for discovery and for other hosts, cut to
+/// max_datagram_bytes.
+void map_network(const BusOptions& options, bool in_shared_memory, const HostLimits& limits, DiscoveryScope scope,
                  dds::DomainParticipantQos& qos);
 
 /// Whose Discovery Server is asked: that of `fast-discovery-server -i 0`.

@@ -122,12 +122,13 @@ std::uint32_t next_number() {
   return static_cast<std::uint32_t>(getpid()) + kApart * participants_so_far++;
 }
 
-dds::DomainParticipantQos participant_qos(const BusOptions& options, const HostLimits& limits, DiscoveryScope scope) {
+dds::DomainParticipantQos participant_qos(const BusOptions& options, bool in_shared_memory, const HostLimits& limits,
+                                          DiscoveryScope scope) {
   dds::DomainParticipantQos qos;
   qos.name(options.participant_name.empty() ? "rtd" : options.participant_name.c_str());
   const std::string user_data = participant_user_data(options);
   qos.user_data().setValue({user_data.begin(), user_data.end()});
-  map_network(options, limits, scope, qos);
+  map_network(options, in_shared_memory, limits, scope, qos);
   map_security(options.security, qos);
   auto& builtin = qos.wire_protocol().builtin;
   // A killed process is forgotten after the lease; its heartbeat topic shows it much earlier.
@@ -148,12 +149,13 @@ ParticipantsOfProcess& participants_of_process() {
 }
 
 std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::DomainParticipantFactory& factory,
-                                                                     BusOptions options, const HostLimits& limits,
-                                                                     DiscoveryScope scope,
+                                                                     const BusOptions& options,
+                                                                     const HostLimits& limits, DiscoveryScope scope,
                                                                      dds::DomainParticipantListener* listener) {
   ParticipantsOfProcess& own = participants_of_process();
   const std::lock_guard lock(own.creating);
   const WithoutServerOfEnvironment announced;
+  bool in_shared_memory = options.shared_memory && why_not_shared_memory(options, limits).empty();
   constexpr int kAttempts = 8;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     // Of two processes that find one port free at once, the second gets another than it announces: Fast DDS 3 then
@@ -161,13 +163,13 @@ std::pair<dds::DomainParticipant*, std::uint32_t> create_participant(dds::Domain
     const ShmFolder one_process_at_a_time(kShmFolder, std::chrono::seconds(5));
     const std::uint32_t number = next_number();
     const auto free_id = free_participant_id(options.domain, number, own.ids);
-    if (!free_id && std::exchange(options.shared_memory, false) && options.on_problem) options.on_problem(kNoFreePort);
+    if (!free_id && std::exchange(in_shared_memory, false) && options.on_problem) options.on_problem(kNoFreePort);
     const std::uint32_t id = free_id.value_or(number % participant_ids(options.domain));
-    dds::DomainParticipantQos qos = participant_qos(options, limits, scope);
+    dds::DomainParticipantQos qos = participant_qos(options, in_shared_memory, limits, scope);
     qos.wire_protocol().participant_id = static_cast<std::int32_t>(id);
     auto* participant = factory.create_participant(options.domain, qos, listener, dds::StatusMask::none());
     if (participant == nullptr) continue;  // the program that uses us may have participants, too
-    if (!options.shared_memory || listens_in_shm_at(sample_port(options.domain, id))) {
+    if (!in_shared_memory || listens_in_shm_at(sample_port(options.domain, id))) {
       own.ids.insert(id);
       return {participant, id};
     }

@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/host/host_checks.hpp"
 
+#include <sys/stat.h>
 #include <sys/statvfs.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "common/bus/qos.hpp"
+#include "common/io/text.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -40,6 +45,25 @@ void warn_socket_buffer(const char* key, std::uint64_t limit, std::uint64_t want
                      std::to_string(wanted));
 }
 
+/// By names as "fastrtps_port24161", "fastdds_port24161". Everyone may open files of mode 666.
+std::map<std::uint32_t, std::uint32_t> ports_of_others(const std::string& shm_dir) {
+  constexpr std::string_view kPort = "_port";
+  constexpr mode_t kReadAndWrite = S_IROTH | S_IWOTH;
+  std::map<std::uint32_t, std::uint32_t> found;
+  std::error_code none;
+  for (const auto& file : std::filesystem::directory_iterator(shm_dir, none)) {
+    const std::string name = file.path().filename();
+    const std::size_t port = name.find(kPort);
+    struct stat status {};
+    if (!name.starts_with("fast") || port == std::string::npos || stat(file.path().c_str(), &status) != 0) continue;
+    if (status.st_uid == geteuid() || (status.st_mode & kReadAndWrite) == kReadAndWrite) continue;
+    if (const auto number = io::parse_number(name.substr(port + kPort.size()));
+        number && *number > 0 && *number < 65536)
+      found[static_cast<std::uint32_t>(*number)] = status.st_uid;
+  }
+  return found;
+}
+
 }  // namespace
 
 HostLimits read_host_limits(const std::string& shm_dir, const std::string& sysctl_dir) {
@@ -49,6 +73,7 @@ HostLimits read_host_limits(const std::string& shm_dir, const std::string& sysct
     limits.shm_total = std::uint64_t{shm.f_blocks} * shm.f_frsize;
     limits.shm_free = std::uint64_t{shm.f_bavail} * shm.f_frsize;
   }
+  limits.closed_ports = ports_of_others(shm_dir);
   limits.rmem_max = read_number(sysctl_dir + "/rmem_max");
   limits.wmem_max = read_number(sysctl_dir + "/wmem_max");
   return limits;
@@ -67,6 +92,17 @@ void require_shared_memory(const BusOptions& options, const HostLimits& limits) 
                  " /dev/shm, or start the container with --shm-size=" + size);
 }
 
+std::string why_not_shared_memory(const BusOptions& options, const HostLimits& limits) {
+  constexpr std::uint32_t kFirst = 7400, kPortsOfDomain = 250;
+  const std::uint32_t first = kFirst + kPortsOfDomain * static_cast<std::uint32_t>(options.domain);
+  const auto port = limits.closed_ports.lower_bound(first);
+  if (options.vendor != "fastdds" || port == limits.closed_ports.end() || port->first >= first + kPortsOfDomain)
+    return {};
+  return "a program of user " + std::to_string(port->second) + " is in DDS domain " + std::to_string(options.domain) +
+         " (port " + std::to_string(port->first) + " in /dev/shm), which user " + std::to_string(geteuid()) +
+         " may not open: what this user starts from now on uses UDP in its place; one user for both spares that";
+}
+
 std::vector<std::string> host_warnings(const BusOptions& options, const HostLimits& limits) {
   std::vector<std::string> warnings;
   if (options.vendor == "inprocess") return warnings;
@@ -77,6 +113,7 @@ std::vector<std::string> host_warnings(const BusOptions& options, const HostLimi
                        " MiB; sudo mount -o remount,size=256m /dev/shm, or " +
                        "start the container with --shm-size=256m");
   }
+  if (const std::string why = why_not_shared_memory(options, limits); !why.empty()) warnings.push_back(why);
   const std::uint64_t wanted_buffer = options.socket_buffer_kib * kKib;
   warn_socket_buffer("rmem_max", limits.rmem_max, wanted_buffer, warnings);
   warn_socket_buffer("wmem_max", limits.wmem_max, wanted_buffer, warnings);

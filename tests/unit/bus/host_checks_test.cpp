@@ -4,6 +4,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 
 namespace rtd::bus {
 namespace {
@@ -13,7 +18,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::uint64_t kMib = 1024 * 1024;
-constexpr HostLimits kAmple{2048 * kMib, 2048 * kMib, 4 * kMib, 4 * kMib};
+const HostLimits kAmple{2048 * kMib, 2048 * kMib, 4 * kMib, 4 * kMib};
 
 std::string shared_memory_error(const BusOptions& options, const HostLimits& limits) {
   try {
@@ -71,6 +76,34 @@ TEST(HostChecks, what_could_not_be_read_is_not_complained_about) {
   const HostLimits limits = read_host_limits("/nonexistent", "/nonexistent");
   EXPECT_EQ(limits.shm_total, 0U);
   EXPECT_EQ(limits.rmem_max, 0U);
+}
+
+TEST(HostChecks, ports_of_another_user_in_the_domain_are_named_with_udp_in_their_place) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root makes files of another user";
+  const std::filesystem::path shm = std::filesystem::temp_directory_path() / ("rtd_shm_" + std::to_string(getpid()));
+  std::filesystem::create_directory(shm);
+  const auto add = [&](const std::string& name, uid_t user, mode_t mode) {
+    const std::string path = shm / name;
+    std::ofstream(path) << 'x';
+    EXPECT_EQ(chmod(path.c_str(), mode) + chown(path.c_str(), user, user), 0);
+  };
+  add("fastrtps_port24161", 0, 0644);      // ours
+  add("fastdds_port24163", 65534, 0666);   // open to all
+  add("fastrtps_port24661", 65534, 0644);  // of domain 69
+  add("fastrtps_1b3f0e", 65534, 0644);     // not a port
+  add("fastrtps_port24661_el", 65534, 0644);
+  BusOptions options;
+  options.vendor = "fastdds";
+  options.domain = 67;
+  EXPECT_EQ(why_not_shared_memory(options, read_host_limits(shm)), "");
+  add("fastrtps_port24165", 65534, 0644);
+  const HostLimits limits = read_host_limits(shm);
+  EXPECT_THAT(why_not_shared_memory(options, limits),
+              AllOf(HasSubstr("user 65534"), HasSubstr("domain 67"), HasSubstr("port 24165"), HasSubstr("UDP")));
+  EXPECT_THAT(host_warnings(options, limits), testing::Contains(HasSubstr("user 65534")));
+  options.vendor = "cyclonedds";
+  EXPECT_EQ(why_not_shared_memory(options, limits), "");
+  std::filesystem::remove_all(shm);
 }
 
 TEST(HostChecks, the_inprocess_bus_needs_nothing_of_the_host) {

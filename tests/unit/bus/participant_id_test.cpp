@@ -85,6 +85,17 @@ TEST(ParticipantOnTheBus, has_a_port_in_shared_memory_that_the_next_one_avoids) 
   EXPECT_EQ(free_participant_id(kDomain, first), before);
 }
 
+TEST(ParticipantOnTheBus, has_no_port_in_shared_memory_beside_a_program_of_another_user) {
+  BusOptions options;
+  options.domain = kDomain;
+  HostLimits limits = read_host_limits();
+  limits.closed_ports[7400 + 250 * kDomain + 13] = geteuid() + 1;
+  const auto first = static_cast<std::uint32_t>(getpid());
+  const auto before = free_participant_id(kDomain, first);
+  const Participant participant(options, limits);
+  EXPECT_EQ(free_participant_id(kDomain, first), before);
+}
+
 TEST(ParticipantOnTheBus, does_not_choose_its_port_while_another_process_does) {
   using std::chrono::milliseconds;
   BusOptions options;
