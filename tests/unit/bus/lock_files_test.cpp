@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -96,6 +97,34 @@ TEST_F(LockFiles, one_that_is_held_stays) {
   EXPECT_TRUE(exists()) << "another holds it, too";
   give_back(other);
   EXPECT_FALSE(exists());
+}
+
+TEST_F(LockFiles, a_segment_of_another_user_that_may_only_be_read_is_copied) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root makes files of another user";
+  const std::string number = std::to_string(getpid()), segment = "/fastrtps_" + number,
+                    port = "/fastrtps_port" + number;
+  for (const std::string& name : {segment, port}) {
+    const int file = shm_open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    EXPECT_EQ(write(file, "message", 8), 8);
+    close(file);
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    char text[8] = {};
+    const bool other_user = setresuid(65534, 65534, 65534) == 0;
+    const int copy = shm_open(segment.c_str(), O_RDWR, 0);
+    const bool copied = pread(copy, text, 8, 0) == 8 && std::string(text) == "message" && pwrite(copy, "M", 1, 0) == 1;
+    _exit(other_user && copied && shm_open(port.c_str(), O_RDWR, 0) < 0 ? 0 : 1);
+  }
+  int status = 1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  const int file = shm_open(segment.c_str(), O_RDONLY | O_CLOEXEC, 0);
+  char first = 0;
+  EXPECT_EQ(read(file, &first, 1), 1);
+  EXPECT_EQ(first, 'm') << "theirs is as it was";
+  close(file);
+  for (const std::string& name : {segment, port}) shm_unlink(name.c_str());
 }
 
 }  // namespace
