@@ -124,7 +124,8 @@ Map sample_map(const SampleMapOptions& options) {
   }
   const FramePtr frame = map.find_keyframe(0)->frame;
   const KeyframeId elsewhere = map.add_keyframe(frame, Eigen::Isometry3d::Identity(), kNoKeyframe);
-  for (std::uint32_t i = 0; i < 5; ++i) map.refresh_landmark(map.add_landmark({0, 0, 2}, {elsewhere, i}));
+  const auto features = static_cast<std::uint32_t>(std::min<std::size_t>(5, frame->features.size()));
+  for (std::uint32_t i = 0; i < features; ++i) map.refresh_landmark(map.add_landmark({0, 0, 2}, {elsewhere, i}));
   return map;
 }
 

@@ -108,8 +108,10 @@ struct WitnessConfig {
   void bind(auto& binder) {
     binder.field("used", used, "landmarks that have been seen to rest carry the pose; off: all alike");
     binder.field("after_s", after_s, {0.0, 60.0}, "a landmark that was seen to rest for so long is a witness");
-    binder.field("settle_s", settle_s, {0.0, 60.0},
-                 "poses in a new map are doubtful until witnesses carry one, but for no longer than this");
+    binder.field(
+        "settle_s", settle_s, {0.0, 60.0},
+        "poses in a new map, or after a contradiction by witnesses, are doubtful until witnesses carry one, but "
+        "for no longer than this");
     binder.field("probation_share", probation_share, {0.0, 100.0},
                  "all other landmarks together have at most this share of the witnesses' influence on the pose, "
                  "more where those are few");

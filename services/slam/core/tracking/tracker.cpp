@@ -56,6 +56,7 @@ TrackOutcome Tracker::initialize(FramePtr frame, LocalMapPtr map) {
   last_.reference = map->keyframes.front().id;
   last_.T_world_camera = map->keyframes.front().T_world_camera;
   support_ = {};
+  witnesses_.forget();
   probation_weight_ = 1;
   settling_since_ns_.reset();
   if (config_.witness.used && config_.witness.settle_s > 0) settling_since_ns_ = last_.frame->stamp_ns;
@@ -121,6 +122,7 @@ TrackOutcome Tracker::track(FramePtr frame, const LocalMapPtr& snapshot) {
 
 void Tracker::forget_motion() {
   motion_.reset();
+  witnesses_.forget();
   apart_since_ns_.reset();
   if (msg::has_pose(state_)) state_ = msg::TrackingState::kRecentlyLost;
 }
@@ -130,6 +132,7 @@ void Tracker::await_relocalization() {
   last_ = TrackedFrame{};
   apart_since_ns_.reset();
   settling_since_ns_.reset();  // it was there before those who walk now
+  witnesses_.forget();
   state_ = msg::TrackingState::kLost;
   relocalizer_.await();
 }
@@ -234,7 +237,7 @@ void Tracker::accept(TrackOutcome& outcome, FramePtr frame, const LocalMapTracki
   const geometry::Matrix6d local = measured + consistency_.covariance(scene_m_);
   outcome.sigma_m = geometry::largest_sigma(measured.topLeftCorner<3, 3>());
   outcome.settling = settles();
-  outcome.unwitnessed = support_.contradicted;
+  outcome.unwitnessed = support_.doubtful;
   const bool unsupported = outcome.unwitnessed || outcome.settling || outcome.impossible;
   const bool doubtful = consistency_.doubts(outcome.sigma_m) || unsupported;
   outcome.state = doubtful ? msg::TrackingState::kDoubtful : state_;
@@ -293,7 +296,7 @@ void Tracker::follow(FramePtr frame, const LocalMap& map, const LocalMapTracking
   last_.T_reference_camera = map.find_keyframe(last_.reference)->T_world_camera.inverse() * last_.T_world_camera;
   inliers_ = tracking.guess.inliers;
   probation_weight_ = tracking.guess.probation_weight;
-  support_ = judge_witnesses(look_for_witnesses(*last_.frame, map, tracking), config_.witness);
+  support_ = witnesses_.judge(look_for_witnesses(*last_.frame, map, tracking), last_.frame->stamp_ns);
   rotation_covariance_ = tracking.guess.covariance.bottomRightCorner<3, 3>();
 }
 

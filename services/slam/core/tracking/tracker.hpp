@@ -50,7 +50,7 @@ struct TrackOutcome {
   double consistency = 1;  ///< Consistency::value()
   double sigma_m = 0;  ///< of the measured position along the worst axis, without what contradicts it; 0 without one
   bool impossible = false;            ///< no hand and no robot moves like that
-  bool unwitnessed = false;           ///< WitnessVerdict::contradicted
+  bool unwitnessed = false;           ///< WitnessVerdict::doubtful
   bool settling = false;              ///< nothing in the new map has been seen at rest for long enough
   bool contradicted = false;          ///< an IMU expected another pose less than a second ago
   std::vector<Association> rejected;  ///< landmarks that were recognised and contradict the measured pose
@@ -79,7 +79,8 @@ class Tracker {
         now_ns_(std::move(now_ns)),
         prior_(prior),
         relocalizer_(config, std::move(places)),
-        consistency_(config.consistency) {}
+        consistency_(config.consistency),
+        witnesses_(config.witness) {}
 
   /// Whether a first keyframe can be made of this frame.
   bool can_initialize(const Frame& frame) const;
@@ -171,6 +172,7 @@ class Tracker {
   double scene_m_ = 0;                                              ///< how far away what last_ sees is
   std::optional<CameraMotion> motion_;  ///< at the last tracked frame, whose pose the map may have moved since
   int inliers_ = 0;
+  WitnessJudge witnesses_;
   WitnessVerdict support_;                         ///< of last_
   double probation_weight_ = 1;                    ///< PoseGuess::probation_weight of last_
   std::optional<std::int64_t> settling_since_ns_;  ///< stamp of a map's first frame, while nothing in it is a witness

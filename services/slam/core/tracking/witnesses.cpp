@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/msg/stamps.hpp"
 #include "services/slam/core/map/tiles.hpp"
 #include "services/slam/core/tracking/matcher.hpp"
 
@@ -32,16 +33,19 @@ WitnessView look_for_witnesses(const Frame& frame, const LocalMap& map, const Lo
   return {count(with_features), count(agreeing), count(expected), count(found), tracking.guess.witnesses};
 }
 
-WitnessVerdict judge_witnesses(const WitnessView& view, const WitnessConfig& config) {
+WitnessVerdict WitnessJudge::judge(const WitnessView& view, std::int64_t stamp_ns) {
   constexpr int kFewestTiles = 5;
-  if (!config.used) return {};
+  if (!config_.used) return {};
   WitnessVerdict verdict;
-  const bool decisive = view.expected >= std::max<double>(kFewestTiles, config.decisive_share * view.with_features);
-  const bool found = view.expected >= kFewestTiles && view.found >= config.found_share * view.expected;
-  verdict.witnessed = view.witnesses >= config.enough || found;
+  const bool decisive = view.expected >= std::max<double>(kFewestTiles, config_.decisive_share * view.with_features);
+  const bool found = view.expected >= kFewestTiles && view.found >= config_.found_share * view.expected;
+  verdict.witnessed = view.witnesses >= config_.enough || found;
   verdict.contradicted = decisive && !verdict.witnessed;
-  verdict.mostly_unknown = view.agreeing < config.wide_share * view.with_features;
-  verdict.carried = verdict.witnessed || (!decisive && !verdict.mostly_unknown);
+  verdict.mostly_unknown = view.agreeing < config_.wide_share * view.with_features;
+  if (verdict.contradicted) contradicted_ns_ = stamp_ns;
+  if (verdict.witnessed || (contradicted_ns_ && msg::minus_s(stamp_ns, *contradicted_ns_) > config_.settle_s)) forget();
+  verdict.doubtful = contradicted_ns_.has_value();
+  verdict.carried = verdict.witnessed || (!decisive && !verdict.mostly_unknown && !verdict.doubtful);
   return verdict;
 }
 

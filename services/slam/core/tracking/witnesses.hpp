@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {
@@ -21,8 +24,24 @@ struct WitnessVerdict {
   bool witnessed = false;       ///< witnesses do
   bool carried = true;          ///< they do, or much of a view in which there are hardly any: what rests may be learnt
   bool mostly_unknown = false;  ///< little of the view is in the map: it needs a keyframe
-  bool contradicted = false;    ///< they should be seen and are not where the pose shows them: it is doubtful
+  bool contradicted = false;    ///< they should be seen and are not where the pose shows them
+  bool doubtful = false;        ///< they contradict, or did a moment ago and have not carried a pose since
 };
-WitnessVerdict judge_witnesses(const WitnessView& view, const WitnessConfig& config);
+
+/// Judges one pose after the other. Where witnesses leave the view while they contradict, as when a camera turns away
+/// with a person, what else agrees proves nothing: the pose stays doubtful until witnesses carry one again, but for no
+/// longer than WitnessConfig::settle_s.
+class WitnessJudge {
+ public:
+  explicit WitnessJudge(const WitnessConfig& config) : config_(config) {}
+
+  WitnessVerdict judge(const WitnessView& view, std::int64_t stamp_ns);
+  /// Another map, or a loss.
+  void forget() { contradicted_ns_.reset(); }
+
+ private:
+  WitnessConfig config_;
+  std::optional<std::int64_t> contradicted_ns_;  ///< stamp of the last contradiction that no witnesses have answered
+};
 
 }  // namespace rtd::slam

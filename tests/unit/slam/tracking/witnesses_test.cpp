@@ -99,8 +99,12 @@ WitnessView usual() {
   return {.with_features = 40, .agreeing = 25, .expected = 30, .found = 20, .witnesses = 120};
 }
 
+WitnessVerdict judge_once(const WitnessView& view, const WitnessConfig& config = {}) {
+  return WitnessJudge(config).judge(view, 0);
+}
+
 TEST(WitnessVerdict, follows_the_witnesses) {
-  const WitnessVerdict verdict = judge_witnesses(usual(), {});
+  const WitnessVerdict verdict = judge_once(usual());
   EXPECT_TRUE(verdict.witnessed);
   EXPECT_TRUE(verdict.carried);
   EXPECT_FALSE(verdict.contradicted);
@@ -110,19 +114,42 @@ TEST(WitnessVerdict, many_others_do_not_replace_witnesses_that_should_be_seen) {
   WitnessView view = usual();
   view.found = 3;
   view.witnesses = 9;
-  EXPECT_TRUE(judge_witnesses(view, {}).contradicted);
-  EXPECT_FALSE(judge_witnesses(view, {}).carried);
+  EXPECT_TRUE(judge_once(view).contradicted);
+  EXPECT_FALSE(judge_once(view).carried);
 }
 
 TEST(WitnessVerdict, a_new_view_is_carried_by_much_that_agrees) {
   WitnessView view = usual();
   view.expected = view.found = view.witnesses = 2;
-  EXPECT_TRUE(judge_witnesses(view, {}).carried);
-  EXPECT_FALSE(judge_witnesses(view, {}).contradicted);
+  EXPECT_TRUE(judge_once(view).carried);
+  EXPECT_FALSE(judge_once(view).contradicted);
   view.agreeing = 8;
-  EXPECT_FALSE(judge_witnesses(view, {}).carried) << "one thing in a corner";
-  EXPECT_TRUE(judge_witnesses(view, {}).mostly_unknown) << "it needs a keyframe";
-  EXPECT_FALSE(judge_witnesses(view, {}).contradicted) << "nothing says otherwise";
+  EXPECT_FALSE(judge_once(view).carried) << "one thing in a corner";
+  EXPECT_TRUE(judge_once(view).mostly_unknown) << "it needs a keyframe";
+  EXPECT_FALSE(judge_once(view).contradicted) << "nothing says otherwise";
+}
+
+/// A camera turns away with a person: witnesses contradict, then leave the view; what the map has just learnt agrees.
+TEST(WitnessJudge, keeps_a_contradiction_in_mind_until_witnesses_answer_it) {
+  WitnessView contradicting = usual(), unknown = usual();
+  contradicting.found = contradicting.witnesses = 2;
+  unknown.expected = unknown.found = unknown.witnesses = 0;
+  const WitnessConfig config;
+  WitnessJudge judge(config);
+  EXPECT_FALSE(judge.judge(unknown, 0).doubtful) << "nothing has contradicted yet";
+  EXPECT_TRUE(judge.judge(contradicting, 100'000'000).doubtful);
+  const WitnessVerdict after = judge.judge(unknown, 500'000'000);
+  EXPECT_TRUE(after.doubtful);
+  EXPECT_FALSE(after.carried) << "or its keyframes would make witnesses of what moves";
+  EXPECT_FALSE(after.contradicted) << "keyframes may be made";
+  EXPECT_FALSE(judge.judge(usual(), 600'000'000).doubtful) << "witnesses carry it";
+  EXPECT_FALSE(judge.judge(unknown, 700'000'000).doubtful);
+  EXPECT_TRUE(judge.judge(contradicting, 800'000'000).doubtful);
+  const auto long_after_ns = 900'000'000 + static_cast<std::int64_t>(1e9 * config.settle_s);
+  EXPECT_FALSE(judge.judge(unknown, long_after_ns).doubtful) << "they may never be seen again";
+  EXPECT_TRUE(judge.judge(contradicting, long_after_ns).doubtful);
+  judge.forget();
+  EXPECT_FALSE(judge.judge(unknown, long_after_ns).doubtful) << "another map";
 }
 
 TEST(WitnessVerdict, says_nothing_when_switched_off) {
@@ -130,8 +157,8 @@ TEST(WitnessVerdict, says_nothing_when_switched_off) {
   view.found = view.witnesses = 0;
   WitnessConfig off;
   off.used = false;
-  EXPECT_TRUE(judge_witnesses(view, off).carried);
-  EXPECT_FALSE(judge_witnesses(view, off).contradicted);
+  EXPECT_TRUE(judge_once(view, off).carried);
+  EXPECT_FALSE(judge_once(view, off).contradicted);
 }
 
 }  // namespace
