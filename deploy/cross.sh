@@ -24,7 +24,7 @@ TEXT
 }
 
 # The packages of setup.sh: libraries for arm64, programs for this machine, and node for arm64, which tests the page.
-# OpenCV for Python is not to be had beside the libraries of arm64: what needs it is skipped.
+# OpenCV for Python is not to be had with the libraries of arm64: what needs it is skipped.
 packages_for() {
   local package
   inside "$place" ./deploy/setup.sh --list | grep -vE '^(build-essential|python3-(opencv|rosbag|sensor-msgs)|nftables|iproute2|fastdds-tools)' |

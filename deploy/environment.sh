@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Sourced by the scripts beside it: points RTD_DATA_DIR and RTD_MODEL_DIR at ../shared when that folder exists.
+# Sourced by the scripts next to it: points RTD_DATA_DIR and RTD_MODEL_DIR at ../shared when that folder exists.
 # Data and weights are read in place and never copied into the project. The calling script sets $root.
 # shellcheck shell=bash disable=SC2154
 if [ -z "${RTD_DATA_DIR:-}" ] && [ -d "$root/../shared/data" ]; then

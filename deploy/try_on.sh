@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
 #
-# Does what a newcomer does, in README's words, on a system that was installed a minute ago: a chroot of its own, with
+# Does what a newcomer does, in README's words, on a system that was installed a minute ago: its own chroot, with
 # its own processes, mounts and shared memory, of which nothing stays.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"

@@ -70,7 +70,7 @@ class ReaderBackend {
 using ErasedCallback = std::function<void(std::shared_ptr<const void>, const WriterId& writer)>;
 
 // ROS 2 services as pairs of topics: how a request gets to a server and its reply to the client that asked. The two
-// RMWs identify requests in ways of their own, so each backend does as the RMW of its vendor and a client uses the
+// RMWs identify requests in their own ways, so each backend does as the RMW of its vendor and a client uses the
 // vendor of the server (docs/ros2.md).
 
 /// A keep-last history for each direction: the default of ROS 2 services.

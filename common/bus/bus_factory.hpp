@@ -23,7 +23,7 @@ struct NetworkOptions {
 
   void bind(auto& binder) {
     binder.field("loopback_only", loopback_only, "false: also the host's network interfaces");
-    binder.field("interfaces", interfaces, "names or IPv4 addresses to use beside loopback, e.g. eth0; none: all")
+    binder.field("interfaces", interfaces, "names or IPv4 addresses to use besides loopback, e.g. eth0; none: all")
         .option("--interface", "Network");
     binder.field("multicast", multicast, "false: only peers and the discovery server are asked");
     binder.field("peers", peers, "hosts that are asked directly, HOST or HOST:PORT, e.g. 192.168.1.20,gpubox")

@@ -51,7 +51,7 @@ class StatusReporter {
   /// `thread` may be used until it has been stopped.
   StatusReporter(StatusCallbacks callbacks, CallbackThread& thread)
       : callbacks_(std::move(callbacks)), thread_(&thread) {}
-  /// For writers: with a thread of its own if there is anything to call.
+  /// For writers: with its own thread if there is anything to call.
   explicit StatusReporter(StatusCallbacks callbacks);
 
   const StatusCallbacks& callbacks() const { return callbacks_; }

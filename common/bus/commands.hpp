@@ -69,7 +69,7 @@ class CommandDesk {
 
   /// As CommandServer. By the worker.
   void offer(const std::string& name, CommandKind kind, CommandServer::Handler handler);
-  /// For work that is long: the handler runs on a thread of its own, next to the worker, and may call run().
+  /// For work that is long: the handler runs on its own thread, next to the worker, and may call run().
   void offer_beside(const std::string& name, CommandKind kind, CommandServer::Handler handler);
   /// Runs it on the worker's thread and waits. Not by the worker.
   CommandAnswer run(std::function<CommandAnswer()> work);
@@ -110,7 +110,7 @@ class CommandError : public BusError {
   Cause cause_;
 };
 
-/// Finds and calls the commands of a domain. Uses a connection of its own, and one more for servers of another DDS
+/// Finds and calls the commands of a domain. Uses its own connection, and one more for servers of another DDS
 /// vendor once such a one is called: the RMWs of ROS 2 do not understand the services of each other. Thread-safe.
 class CommandClient {
  public:

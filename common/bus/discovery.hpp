@@ -50,7 +50,7 @@ class TopicTypes {
 };
 
 /// The endpoints of a domain, as a vendor's discovery finds them. Discovery threads only take notes; the watcher of
-/// writers has a thread of its own, so that it may create readers. Thread-safe.
+/// writers has its own thread, so that it may create readers. Thread-safe.
 class EndpointRegistry {
  public:
   std::vector<TopicWriter> writers() const;

@@ -43,7 +43,7 @@ struct MessageMemory {
 };
 
 /// Lends uninitialised messages as shared pointers and takes their memory back: a fresh frame would cost 375 page
-/// faults. What grew larger than any of ours is given back. Messages may outlive the pool. Thread-safe.
+/// faults. What grew larger than any of our own is given back. Messages may outlive the pool. Thread-safe.
 template <class T>
 class MessagePool {
  public:

@@ -18,7 +18,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/writer_id.hpp"
 
-/// Topics as bytes: recording, replaying and inspecting need no type. In addition to Bus, on a connection of its own.
+/// Topics as bytes: recording, replaying and inspecting need no type. In addition to Bus, on its own connection.
 namespace rtd::bus {
 
 /// Bytes of a changing number in memory that is kept and not cleared. Made for samples as CDR: what follows the 4 bytes

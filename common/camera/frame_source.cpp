@@ -30,7 +30,7 @@ constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
      "frame its time in seconds (its number / the rate is enough)"},
     {"stamp_doubled",
      "stamps are the same as those before: the driver does not fill header.stamp, or the list repeats them; give each "
-     "frame a time of its own"},
+     "frame its own time"},
     {"color_unreadable", "colour images are missing or cannot be decoded: the first one says why"},
     {"depth_unreadable", "depth images are missing or cannot be decoded: the first one says why"},
     {"depth_not_16_bit", "depth images are not of 16 bits and one channel: write them so, 0 for no measurement"},

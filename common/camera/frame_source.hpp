@@ -168,7 +168,7 @@ class SkipLog {
   /// ": 2 x size_mismatch, first: ..."; empty when nothing was left out.
   std::string summary() const;
   /// What has left out all images since the last frame: how many, and the newest. Empty when nothing was left out for
-  /// what it is (that colour and depth do not pair, or came too fast, has words of its own).
+  /// what it is (that colour and depth do not pair, or came too fast, has its own words).
   std::string why_none() const;
 
  private:
@@ -223,7 +223,7 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
 /// The frame that a pair of images of one stamp makes; seq is given when it is handed out.
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);
 
-/// For a depth image with a stamp of its own: the frame's depth_offset_s is the difference of the stamps and what the
+/// For a depth image with its own stamp: the frame's depth_offset_s is the difference of the stamps and what the
 /// device adds; 0 = unknown when that is more than a frame may say.
 void set_depth_stamp(SourceFrame& frame, std::int64_t depth_ns, const SourceInfo& info);
 

@@ -27,7 +27,7 @@ std::string_view unquoted(std::string_view text) {
   return quoted ? text.substr(1, text.size() - 2) : text;
 }
 
-/// Where a character that `wanted` accepts stands outside of quotes; npos when nowhere.
+/// Where a character that `wanted` accepts is outside of quotes; npos when nowhere.
 template <class Wanted>
 std::size_t outside_quotes(std::string_view text, const Wanted& wanted) {
   char quote = 0;

@@ -63,7 +63,7 @@ inline std::string stored_source_forms() {
   return msg::word_list(forms);
 }
 
-/// The same of all sources; `recording_options` stand behind the last form of a recording.
+/// The same of all sources; `recording_options` follow the last form of a recording.
 inline std::string all_source_forms(const std::string& recording_options = "") {
   std::vector<std::string> forms;
   std::size_t last_recording = 0;

@@ -26,7 +26,7 @@ struct MotionFeedTopics {
   std::string section;  ///< of the configuration that names them: "slam"
 };
 
-/// Reads `sensor_msgs/Imu` and `nav_msgs/Odometry` on a connection of its own, as their writers offer them: best effort
+/// Reads `sensor_msgs/Imu` and `nav_msgs/Odometry` on its own connection, as their writers offer them: best effort
 /// where a driver offers no more. Samples wait until the frame that needs them; the oldest go when too many do.
 class MotionFeed {
  public:

@@ -71,7 +71,7 @@ json to_json(const Layer& layer, std::size_t wanted) {
   return result;
 }
 
-/// What stands in a script element must not end it.
+/// The content of a script element must not end it.
 std::string harmless(std::string text) {
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at))
     text.replace(at, 1, "\\u003c");

@@ -37,7 +37,7 @@ struct Page {
 /// thinned out evenly until the page has at most `most_bytes`.
 std::string html(const Page& page, std::size_t most_bytes = 5'000'000);
 
-/// The page without its content: `@SCENE@` stands where the scene belongs, in JSON with "<" written as an escape.
+/// The page without its content: `@SCENE@` marks where the scene belongs, in JSON with "<" written as an escape.
 std::string_view html_template();
 
 /// `page` with `data`, in JSON, in place of `mark` in a script element, which no text in the data can end.

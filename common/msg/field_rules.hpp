@@ -15,7 +15,7 @@
 ///   int64 named *_ns         a time: at most kMaxTime_ns in size, so that differences do not overflow
 ///   text                     UTF-8 on one line without control characters, at most kMaxText bytes
 ///   sequences                at most kMaxElements, or kMaxBytes of memory for numbers
-///   enumerations             up to last_value() of the type, which stands next to it
+///   enumerations             up to last_value() of the type, which is next to it
 namespace rtd::msg {
 
 inline constexpr double kMaxValue = 1e15;      ///< its square is finite also as a float

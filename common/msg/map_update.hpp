@@ -20,7 +20,7 @@ enum MapContent : std::uint32_t {
 /// What changed about one keyframe. Its pose always counts, the rest where `content` says so.
 struct MapKeyframe {
   std::uint32_t keyframe_id = 0;
-  std::uint32_t map_id = 0;  ///< map that it belongs to: each has a world frame of its own until merged
+  std::uint32_t map_id = 0;  ///< map that it belongs to: each has its own world frame until merged
   std::int64_t stamp_ns = 0;
   Transform T_world_camera{};
   std::uint32_t content = 0;             ///< MapContent bits

@@ -16,7 +16,7 @@
 #include "common/msg/fields.hpp"
 
 /// Whether a message from outside holds only what an honest program sends: each field by its rule
-/// (common/msg/field_rules.hpp), then the message's own rule, broken_rule(), which stands next to its RTD_FIELDS line.
+/// (common/msg/field_rules.hpp), then the message's own rule, broken_rule(), which is next to its RTD_FIELDS line.
 /// The bus asks for every message before its readers see it, so cores may rely on it. Allocates nothing, throws
 /// nothing.
 namespace rtd::msg {
@@ -33,13 +33,13 @@ inline std::string to_string(const ImplausibleField& bad) {
 }
 
 /// The fields of a message that do not go together; nullptr when all do. Asked only when each alone holds its rule.
-/// Overloads stand next to the messages.
+/// Overloads are next to the messages.
 template <Message T>
 constexpr const char* broken_rule(const T&) {
   return nullptr;
 }
 
-/// The part of a field that counts. Overloads stand next to the messages.
+/// The part of a field that counts. Overloads are next to the messages.
 template <Message T, class Field>
 constexpr const Field& used_part(const T&, const Field& field) {
   return field;

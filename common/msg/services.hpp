@@ -15,7 +15,7 @@ struct NamedService {
   const char* executable;
   const char* help;               ///< one line
   bool started_by_run = true;     ///< `rtd run` starts it, always or by an option
-  bool in_package_of_all = true;  ///< false: installed by a package of its own
+  bool in_package_of_all = true;  ///< false: installed by its own package
   bool in_every_run = false;      ///< `rtd run` without options starts it
 };
 

@@ -8,7 +8,7 @@
 
 namespace rtd::msg {
 
-/// "a, b or c", for help texts and messages that name every entry of a table; `last` stands before the last word.
+/// "a, b or c", for help texts and messages that name every entry of a table; `last` comes before the last word.
 inline std::string word_list(const std::vector<std::string>& words, const std::string& last = " or ") {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {

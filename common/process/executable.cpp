@@ -65,7 +65,7 @@ std::string find_executable(const std::string& name) {
 std::string missing_executable(const std::string& name) {
   const bool viewer = name == "rtd-viewer";
   const std::string package = viewer ? "rtd-slam-viewer" : "rtd-slam";
-  return name + " is neither beside rtd (" + own_directory() + ") nor in PATH: install the package " + package +
+  return name + " is neither next to rtd (" + own_directory() + ") nor in PATH: install the package " + package +
          ", or build it with 'cmake --build <build folder> --target " + name + "'" +
          (viewer ? " (needs libboost-dev and libjs-three)" : "");
 }

@@ -72,7 +72,7 @@ Certificate unsigned_certificate(const std::string& common_name, const Validity&
   ASN1_TIME_set(X509_getm_notAfter(certificate.get()), static_cast<std::time_t>(validity.not_after_s));
   const auto* const name = reinterpret_cast<const unsigned char*>(common_name.c_str());
   require(X509_NAME_add_entry_by_txt(X509_get_subject_name(certificate.get()), "CN", MBSTRING_UTF8, name, -1, -1, 0),
-          "name " + common_name + " cannot stand in a certificate (at most 64 characters)");
+          "name " + common_name + " cannot be used in a certificate (at most 64 characters)");
   require(X509_set_pubkey(certificate.get(), &key), "public key");
   return certificate;
 }

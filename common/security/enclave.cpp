@@ -64,7 +64,7 @@ Enclave load_enclave(const std::string& keystore, const std::string& name) {
   enclave.certificate_validity = validity_of(*certificate);
   enclave.permissions = check_documents(enclave.files);
   if (enclave.permissions.subject != subject_name(*certificate))
-    throw SecurityError(fmt::format("{} is for {}, the certificate beside it for {}",
+    throw SecurityError(fmt::format("{} is for {}, the certificate next to it for {}",
                                     enclave.files.permissions().string(), enclave.permissions.subject,
                                     subject_name(*certificate)));
   return enclave;

@@ -19,7 +19,7 @@ std::string topics_xml(const char* action, const std::vector<std::string>& topic
   if (topics.empty()) return {};
   std::string xml = fmt::format("        <{}>\n          <topics>\n", action);
   for (const std::string& topic : topics) xml += fmt::format("            <topic>{}</topic>\n", topic);
-  // Any partition, also none: topics that stay on a host are in a partition of its own.
+  // Any partition, also none: topics that stay on a host are in its own partition.
   return xml + fmt::format(
                    "          </topics>\n          <partitions>\n            <partition>*</partition>\n"
                    "          </partitions>\n        </{}>\n",

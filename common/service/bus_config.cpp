@@ -140,7 +140,7 @@ DdsSetting name_profile(const char* variable, const std::string& value) {
   const std::string options = as_options(text);
   return {fmt::format("{}={}: is not read here, transports and QoS are rtd's own; {}", variable, shown,
                       options.empty() ? "hosts and interfaces: --peers, --interface, --profile"
-                                      : "what it says of the network:" + options),
+                                      : "what it says about the network:" + options),
           false};
 }
 

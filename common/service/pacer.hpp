@@ -55,7 +55,7 @@ class Pacer {
  public:
   Pacer(const PacerConfig& config, std::function<std::int64_t()> now_ns);
 
-  /// What to do about the frame with this stamp, the next one of the source, while `newer_waiting` frames stand ready
+  /// What to do about the frame with this stamp, the next one of the source, while `newer_waiting` frames are ready
   /// behind it. A late frame is only skipped for a newer one: a source that is too slow still gives what it can.
   PaceDecision next(std::int64_t stamp_ns, std::size_t newer_waiting = 1);
   /// After the last frame: kWait while results are missing, kResend, kGiveUp; kSend when every frame is answered.

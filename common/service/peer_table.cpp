@@ -75,7 +75,7 @@ bool PeerTable::believes(const std::string& service, const bus::WriterId& writer
   return writers == nullptr || writers->matched(bus::participant_of(writer));
 }
 
-/// With a gate of its own from then on.
+/// With its own gate from then on.
 bool PeerTable::admit(const std::string& name, std::int64_t now_ns) {
   const auto others = std::ranges::count_if(peers_, [](const auto& peer) { return !is_ours(peer.first); });
   if (!is_ours(name) && static_cast<std::size_t>(others) >= kMaxOthers) {

@@ -67,7 +67,7 @@ class NoPeersWarning {
  public:
   static constexpr std::chrono::milliseconds kUsualPatience{10'000};
 
-  /// `warn` is called by a thread of its own.
+  /// `warn` is called by its own thread.
   NoPeersWarning(const Heartbeat& heartbeat, const bus::BusOptions& options,
                  std::function<void(const std::string&)> warn, std::chrono::milliseconds patience = kUsualPatience);
   ~NoPeersWarning();

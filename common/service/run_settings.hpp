@@ -81,7 +81,7 @@ struct MotionTopics {
   void bind(auto& binder) {
     binder
         .field("imu.topic", imu,
-               "topic of an IMU beside the camera, sensor_msgs/Imu: poses continue while nothing can be seen; empty: "
+               "topic of an IMU next to the camera, sensor_msgs/Imu: poses continue while nothing can be seen; empty: "
                "none")
         .option("--imu", "Robot");
     binder.field("imu.mount", imu_mount,
@@ -129,7 +129,7 @@ struct MaskSettings {
   void bind(auto& binder) {
     binder
         .choice("masks", use, {"auto", "on", "off"},
-                "people as pixels beside their boxes; auto: where the network for it is there")
+                "people as pixels as well as boxes; auto: where the network for it is there")
         .option("--masks", "Dynamic points");
     binder
         .field("mask_model", model,

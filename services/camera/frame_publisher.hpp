@@ -23,7 +23,7 @@
 
 namespace rtd::camera {
 
-/// Encodes images as JPEG and publishes them in a thread of its own that yields to everything else of the pipeline, so
+/// Encodes images as JPEG and publishes them in its own thread that yields to everything else of the pipeline, so
 /// that a reader of the JPEG topic delays no pose. offer(): one thread.
 class JpegPublisher {
  public:
@@ -75,7 +75,7 @@ struct MotionFrames {
 };
 
 /// Publishes what IMU and wheels of a source measured, on topics that only raw readers need (common/msg/imu.hpp), over
-/// a connection of its own. One thread.
+/// its own connection. One thread.
 class MotionPublisher {
  public:
   /// Throws BusError when the bus refuses.

@@ -64,7 +64,7 @@ class FirstPublisher {
   std::uint64_t refused_ = 0;
 };
 
-/// The topics of a ROS 2 camera driver, over a connection of its own. Each topic is read as its writers offer it
+/// The topics of a ROS 2 camera driver, over its own connection. Each topic is read as its writers offer it
 /// (TopicFollower): best effort where a writer offers no more (ROS 2's sensor data profile).
 class Ros2Feed final : public LiveFeed {
  public:

@@ -117,7 +117,7 @@ int run_preview(int argc, char** argv) {
   app.add_option("--seconds", options.seconds, "Of the source to measure")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  app.add_option("--picture", options.picture, "PNG or JPEG file: colour beside depth")->capture_default_str();
+  app.add_option("--picture", options.picture, "PNG or JPEG file: colour to go with depth")->capture_default_str();
   service::add_bus_options(app, options.bus);
   return service::run_command(app, argc, argv, [&]() -> int {
     try {

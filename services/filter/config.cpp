@@ -20,7 +20,7 @@ void ServiceConfig::bind(service::ConfigBinder& binder) {
   binder.field("shed_load", shed_load, "realtime: do less, in steps, while poses come late; false: never");
   binder.field("map_frame", map_frame, "frame of rt/filter/movers: as slam.map_frame");
   binder.field("imu.topic", imu,
-               "topic of an IMU beside the camera, sensor_msgs/Imu: its gyroscope says how the camera turns; rtd run "
+               "topic of an IMU next to the camera, sensor_msgs/Imu: its gyroscope says how the camera turns; rtd run "
                "sets it by --imu; empty: none");
   binder.field("imu.mount", imu_mount, "as slam.imu.mount: how the IMU is turned in the camera's optical frame");
   core.bind(binder);

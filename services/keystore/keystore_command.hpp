@@ -23,7 +23,7 @@ struct KeystoreRequest {
   int domain = -1;                  ///< the only one; -1 = all
   bool verbose = false;             ///< info: all topics by name
   bool encrypt_frames = false;      ///< also data that otherwise stays in shared memory
-  std::vector<std::string> robots;  ///< that get enclaves of their own
+  std::vector<std::string> robots;  ///< that get their own enclaves
   std::string like;                 ///< role whose topics a new enclave gets
   std::vector<std::string> publish, subscribe;
 };

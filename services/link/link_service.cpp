@@ -41,7 +41,7 @@ bus::BusOptions robot_options(const service::Runtime& runtime) {
   return options;
 }
 
-/// The robot's, with a network of its own.
+/// The robot's, with its own network.
 bus::BusOptions fleet_options(const ServiceConfig& config, const service::Runtime& runtime) {
   service::ConfigSources sources;
   sources.profile = config.fleet_profile;

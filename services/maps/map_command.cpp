@@ -52,7 +52,7 @@ const MapPart& choose(const MapReport& report, long long id, std::ostream& err) 
     const auto largest = std::ranges::max_element(maps, {}, &MapPart::keyframes);
     if (maps.size() > 1)
       err << fmt::format(
-          "rtd map export: the file has {} maps, each in a frame of its own; exporting map {}, which has most "
+          "rtd map export: the file has {} maps, each in its own frame; exporting map {}, which has most "
           "keyframes (--map-id chooses another)\n",
           maps.size(), largest->id);
     return *largest;
@@ -209,7 +209,7 @@ void add_map_commands(CLI::App& app, MapRequest& request) {
   to_export
       ->add_option("--format", request.format,
                    "html (to look at in a browser), ply, pcd (landmarks, occupied cells), tum (keyframe poses), bt "
-                   "(OctoMap of the landmarks) or pgm (floor plan of a voxel map, with a YAML file beside it)")
+                   "(OctoMap of the landmarks) or pgm (floor plan of a voxel map, with a YAML file next to it)")
       ->check(CLI::IsMember({"html", "ply", "pcd", "tum", "bt", "pgm"}))
       ->required();
   to_export->add_option("-o,--out", request.out, "New file; nothing is overwritten")->required();

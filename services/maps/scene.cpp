@@ -13,7 +13,7 @@
 namespace rtd::maps {
 namespace {
 
-/// What points3D.txt says of a landmark's observations.
+/// What points3D.txt holds of a landmark's observations.
 struct Track {
   std::string text;
   double error_px = 0;

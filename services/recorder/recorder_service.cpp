@@ -92,7 +92,7 @@ bus::CommandAnswer RecorderService::start(const std::string& name) {
   } catch (const io::NameError& error) {
     return {false, error.what()};
   }
-  config_.output.clear();  // the next one gets a name of its own
+  config_.output.clear();  // the next one gets its own name
   session_->listen(*bus_);
   show_recording();
   SPDLOG_INFO("event=started_by_command path={}", session_->path());

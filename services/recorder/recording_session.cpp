@@ -308,7 +308,7 @@ void RecordingSession::write_metadata(const std::string& text) const {
   }
   SPDLOG_WARN(
       "event=metadata_not_written path={} cause=\"{}\" "
-      "fix=\"give each recording a folder of its own: -o NAME without .mcap\"",
+      "fix=\"give each recording its own folder: -o NAME without .mcap\"",
       files_.metadata().string(), cause);
 }
 

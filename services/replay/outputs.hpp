@@ -20,8 +20,7 @@ struct OutputOptions {
   std::string robot;                          ///< whose the topics become; "": names as recorded
   bool restamp = false;                       ///< published_ns of our frames and features becomes now
   bool wait_for_readers = false;              ///< never overtake a reliable reader: nothing else paces the messages
-  bool frames_apart =
-      false;  ///< frames have a writing thread of their own, so that other topics do not wait a millisecond
+  bool frames_apart = false;  ///< frames have their own writing thread, so that other topics do not wait a millisecond
 };
 
 /// A topic of the recording on the bus.

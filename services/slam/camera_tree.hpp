@@ -22,7 +22,7 @@ struct RobotBase {
   bool publish_camera = true;                                       ///< tf also carries base -> camera
 };
 
-/// Of a camera that looks horizontally, in axes of its own with x forward and z up.
+/// Of a camera that looks horizontally, in its own axes with x forward and z up.
 Eigen::Isometry3d level_camera();
 using service::parse_mount;
 

@@ -19,7 +19,7 @@ struct SavedMap {
   std::uint64_t keyframes = 0, landmarks = 0, bytes = 0;
 };
 
-/// Keeps the map of a SlamSystem on disk: checkpoints while it grows, written in a thread of its own that yields to all
+/// Keeps the map of a SlamSystem on disk: checkpoints while it grows, written in its own thread that yields to all
 /// others, and the last word at the end. Tracking is never held up, the mapper only while the map is copied.
 class MapKeeper {
  public:
@@ -69,7 +69,7 @@ class MapKeeper {
 void write_trajectory(const std::vector<StampedPose>& poses, const std::filesystem::path& path);
 
 /// Writes trajectory.txt, keyframes.txt (TUM format) and map.ply of the first map into `folder`, which is made when
-/// missing, and trajectory_map_N.txt for each other map that was never merged: it has a world frame of its own;
+/// missing, and trajectory_map_N.txt for each other map that was never merged: it has its own world frame;
 /// trajectories as write_trajectory(). Call after SlamSystem::finish(). Throws std::runtime_error naming the file that
 /// cannot be written.
 void write_run_files(const SlamSystem& slam, const std::filesystem::path& folder);

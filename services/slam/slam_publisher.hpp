@@ -17,7 +17,7 @@
 namespace rtd::slam {
 
 /// Puts what slam found on the bus: keyframe events and the result for our own services, the ROS 2 messages for all.
-/// One thread, that of the frames; the point cloud is published from a thread of its own, because copying the map may
+/// One thread, that of the frames; the point cloud is published from its own thread, because copying the map may
 /// wait for a bundle adjustment.
 class SlamPublisher {
  public:

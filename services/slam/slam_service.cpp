@@ -316,8 +316,7 @@ void SlamService::log_gravity(const UpFound& up) const {
     SPDLOG_WARN(
         "event=gravity_unknown source={} waited_frames={} effect=\"up is as given: {}\" fix=\"begin where the camera "
         "sees the floor, at most 40 degrees from the configured up\"",
-        config_.base.gravity, up.frames,
-        config_.base.given() ? "the base stands level" : "the camera looks horizontally");
+        config_.base.gravity, up.frames, config_.base.given() ? "the base is level" : "the camera looks horizontally");
   }
 }
 

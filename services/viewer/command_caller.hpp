@@ -15,7 +15,7 @@
 
 namespace rtd::viewer {
 
-/// Calls commands of the domain for clients, one after the other, in a thread of its own: a call may take seconds.
+/// Calls commands of the domain for clients, one after the other, in its own thread: a call may take seconds.
 class CommandCaller {
  public:
   using Answer = std::function<void(CommandResult)>;

@@ -54,7 +54,7 @@ bool start_detached(const char* program, std::string argument) {
 }
 
 /// Opens an address with xdg-open. False where no desktop of this user is at hand: no display, a login over SSH, no
-/// xdg-open. The address, with its token, stands in a file in the user's own run-time folder and not on a command
+/// xdg-open. The address, with its token, is in a file in the user's own run-time folder and not on a command
 /// line, which all users can read.
 bool open_in_browser(const std::string& address) {
   const std::string folder = variable("XDG_RUNTIME_DIR");

@@ -42,7 +42,7 @@ class SampleLimits {
   std::map<WriterId, std::map<const void*, std::size_t>> largest_;  ///< by reader
 };
 
-/// One reader with a thread of its own: Cyclone's threads only wake it, so a slow callback holds up neither discovery
+/// One reader with its own thread: Cyclone's threads only wake it, so a slow callback holds up neither discovery
 /// nor other readers; what it cannot take in time, the keep-last history drops.
 class CycloneReader : public ReaderBackend {
  public:

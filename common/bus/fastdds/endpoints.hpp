@@ -19,7 +19,7 @@
 
 namespace rtd::bus::fastdds {
 
-/// One DataReader with a thread of its own: Fast DDS's threads only wake it, so a slow callback holds up neither
+/// One DataReader with its own thread: Fast DDS's threads only wake it, so a slow callback holds up neither
 /// discovery nor other readers; what it cannot take in time, the keep-last history drops.
 class FastddsReader : public ReaderBackend, private dds::DataReaderListener {
  public:

@@ -59,7 +59,7 @@ class ScreeningDescriptor : public transports::ChainingTransportDescriptor {
 /// it counts to a sequence number that is far away. Reports the first one to `on_problem`. Others' claims to rings of
 /// ours are taken out.
 ///
-/// One datagram at a time, though each socket has a thread of its own: in a secured domain Fast DDS 2.9 connects the
+/// One datagram at a time, though each socket has its own thread: in a secured domain Fast DDS 2.9 connects the
 /// handshake of two participants that it discovers at once, by multicast and unicast, through one unguarded scratch
 /// object. One of them was then never answered, one start in thirty of eight participants on a busy host.
 ///

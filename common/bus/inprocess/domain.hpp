@@ -79,7 +79,7 @@ struct ReaderEndpoint {
 /// All endpoints of one domain number in this process. Thread-safe; never runs a callback under its lock.
 class Domain {
  public:
-  /// Typed messages have no bytes here, so typed and raw endpoints have domains of their own.
+  /// Typed messages have no bytes here, so typed and raw endpoints have their own domains.
   enum class Content { kTyped, kRaw };
   /// The domain of that number; lives as long as a connection holds it.
   static std::shared_ptr<Domain> join(std::uint32_t number, Content content);

@@ -109,7 +109,7 @@ std::optional<Calibration> calibration_by_name(const FolderContents& contents, s
   return std::nullopt;
 }
 
-/// Settings of other programs beside the data, under names that do not speak for them: "orb2.yaml".
+/// Settings of other programs next to the data, under names that do not speak for them: "orb2.yaml".
 std::vector<std::pair<std::string, std::string>> settings_beside(const FolderContents& contents) {
   std::vector<std::pair<std::string, std::string>> found;  // file and form
   for (const std::string& file : find_files(contents, "*.y*ml")) {
@@ -130,7 +130,7 @@ Calibration required_calibration(const FolderContents& contents, const std::stri
   std::string files;
   for (const auto& [file, form] : settings) files += fmt::format("{}{} ({})", files.empty() ? "" : ", ", file, form);
   throw SourceError(fmt::format(
-      "no calibration for {}, but beside the data: {}. Choose one: --source '{}{}calibration={}'",
+      "no calibration for {}, but next to the data: {}. Choose one: --source '{}{}calibration={}'",
       contents.folder.string(), files, uri, uri.find('?') == std::string::npos ? '?' : '&', settings.front().first));
 }
 

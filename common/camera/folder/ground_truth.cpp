@@ -173,7 +173,7 @@ GroundTruth read_pose_files(const FolderContents& contents, const PairList& list
                              one.poses.front().T_world_body});
   }
   std::ranges::sort(truth.poses, {}, &geometry::StampedPose::stamp_ns);
-  truth.note = fmt::format("{} matrices beside {}", truth.poses.size(), contents.poses.front());
+  truth.note = fmt::format("{} matrices next to {}", truth.poses.size(), contents.poses.front());
   if (left_out > 0) truth.note += fmt::format(", {} left out that are no poses", left_out);
   if (named.files.empty() &&
       !give_stamps(truth.poses, static_cast<std::int64_t>(contents.poses.size()), image_stamps(contents, list)))

@@ -28,7 +28,7 @@ constexpr const char* kAnyPoses =
     "*groundtruth*/data.csv|groundtruth*.csv";
 constexpr const char* kNone = "";
 
-/// The first that fits is taken: what needs more stands before what needs less.
+/// The first that fits is taken: what needs more comes before what needs less.
 constexpr Layout kLayouts[] = {
     {"OpenLORIS",
      kNone,
@@ -245,7 +245,7 @@ class Search {
   void look_at(const fs::path& folder, int levels) {
     if (!walk_.enter(folder)) return;
     if (++looked_at_ > kMostFolders)
-      throw SourceError(folder.string() + " and the folders beside it are more than " + std::to_string(kMostFolders) +
+      throw SourceError(folder.string() + " and the folders next to it are more than " + std::to_string(kMostFolders) +
                         ": name the one with the sequence");
     if (auto contents = fitting_layout(walk_, folder)) {
       found.push_back(*contents);
@@ -288,7 +288,7 @@ SourceError unknown(const fs::path& folder, const io::FolderWalk& walk) {
                      "16-bit PNG, PGM, TIFF, EXR, npy) of the same numbers into depth/");
 }
 
-constexpr int kLevels = 3;  // an archive unpacks into a folder of its own, and that holds chess/seq-01
+constexpr int kLevels = 3;  // an archive unpacks into its own folder, and that holds chess/seq-01
 
 }  // namespace
 

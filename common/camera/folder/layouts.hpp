@@ -18,7 +18,7 @@ enum class PoseAxes {
   kNed,      ///< x forward, y right, z down (TartanAir)
 };
 
-/// A form of folders with colour and depth. Patterns are those of a shell, in any case, `|` stands between
+/// A form of folders with colour and depth. Patterns are those of a shell, in any case, `|` separates
 /// alternatives, of which the first that finds a file counts; lists end with .txt, everything else names images.
 struct Layout {
   const char* name;

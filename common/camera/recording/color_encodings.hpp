@@ -21,7 +21,7 @@ struct ColorEncoding {
   }
 };
 
-/// Null when it is not known. Names are those of sensor_msgs/image_encodings.hpp and those that drivers use beside
+/// Null when it is not known. Names are those of sensor_msgs/image_encodings.hpp and those that drivers use besides
 /// them; the name of a Bayer pattern is its first row and then its second.
 const ColorEncoding* find_color_encoding(std::string_view name);
 

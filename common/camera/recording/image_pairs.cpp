@@ -210,7 +210,7 @@ void ImagePairs::load_recorded_camera() {
   color_.camera = recorded_camera(topics_.info, color_);
   if (!color_.camera) {
     throw SourceError(
-        recording_->name() + ": no sensor_msgs/CameraInfo beside " + topics_.color +
+        recording_->name() + ": no sensor_msgs/CameraInfo next to " + topics_.color +
         "; name it (?info=TOPIC) or give ?calibration=FILE or ?intrinsics=fx,fy,cx,cy; its topics are:\n" +
         list_topics(*recording_));
   }
@@ -218,7 +218,7 @@ void ImagePairs::load_recorded_camera() {
 }
 
 void ImagePairs::align_depth() {
-  std::string missing = "there must be a sensor_msgs/CameraInfo beside " + topics_.depth +
+  std::string missing = "there must be a sensor_msgs/CameraInfo next to " + topics_.depth +
                         "; if it is elsewhere, name it: ?depth_info=TOPIC";
   try {
     depth_.camera = recorded_camera(topics_.depth_info, depth_);

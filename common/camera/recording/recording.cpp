@@ -187,7 +187,7 @@ std::string info_beside(const Topics& infos, std::string image) {
   return {};
 }
 
-/// The one beside the image, else the only one.
+/// The one next to the image, else the only one.
 std::string choose_info(const Reader& recording, const std::string& color) {
   const Topics infos = fitting(recording, is_info);
   const std::string beside = info_beside(infos, color);

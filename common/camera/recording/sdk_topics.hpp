@@ -9,7 +9,7 @@
 #include "common/camera/recording/recording.hpp"
 #include "common/msg/ros.hpp"
 
-/// What the SDKs of cameras record beside their images. RealSense: in .bag messages of ROS, in .db3 (since 2026) texts
+/// What the SDKs of cameras record with their images. RealSense: in .bag messages of ROS, in .db3 (since 2026) texts
 /// "key=value;key=value". Orbbec (SDK 2, in .bag and .mcap): a "stream profile" for each stream.
 namespace rtd::camera {
 

@@ -50,7 +50,7 @@ class Sensor {
   /// 16-bit depth, 0 = no measurement: out of range, grazing, next to a depth edge, or hidden from the projector.
   /// `noise`: CV_32FC1, variance 1, instead of the sensor's own white noise when not empty.
   cv::Mat measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index, const cv::Mat& noise = {}) const;
-  /// The image with noise, in a buffer of its own.
+  /// The image with noise, in its own buffer.
   cv::Mat measure_color(const cv::Mat& ideal_bgr, std::uint64_t frame_index) const;
 
  private:

@@ -26,7 +26,7 @@ struct ReadItem {
   std::int64_t begin_ns = 0, end_ns = 0;  ///< when it was read, by the clock of the ReadAhead
 };
 
-/// Reads a source in a thread of its own, a few frames ahead, so that decoding overlaps with everything else. The
+/// Reads a source in its own thread, a few frames ahead, so that decoding overlaps with everything else. The
 /// source belongs to that thread until it is joined, but for stop(). The consumer is one thread.
 class ReadAhead {
  public:

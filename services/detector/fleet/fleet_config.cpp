@@ -76,7 +76,7 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
   FleetConfig fleet;
   fleet.robots = {config.robots.begin(), config.robots.end()};
   if (fleet.robots.erase(kAll) > 0 && !fleet.robots.empty())
-    throw service::ConfigError("detector.robots (--robots): 'all' stands alone, beside it are names");
+    throw service::ConfigError("detector.robots (--robots): 'all' is given alone, not with names");
   for (const std::string& robot : fleet.robots) {
     if (bus::is_robot_name(robot)) continue;
     throw service::ConfigError(fmt::format(

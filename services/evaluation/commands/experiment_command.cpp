@@ -174,10 +174,9 @@ void add_common_options(CLI::App& command, ExperimentOptions& options) {
   command.add_option("--pace", options.pace, "realtime, asap or lockstep")
       ->check(CLI::IsMember({"realtime", "asap", "lockstep"}))
       ->capture_default_str();
-  command.add_option("--compare", options.compare, "Results (.json) of another build or of other options beside these");
+  command.add_option("--compare", options.compare, "Results (.json) of another build or other options to compare with");
   command
-      .add_option("--jobs", options.jobs,
-                  "Runs beside each other, in DDS domains of their own; more make the ms larger")
+      .add_option("--jobs", options.jobs, "Runs at the same time, in their own DDS domains; more make the ms larger")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
   command.add_option("--frames", options.frames, "End each run after so many frames");

@@ -28,7 +28,7 @@ std::vector<PlannedRun> missing_runs(const ExperimentOptions& options, const Exp
 /// 1200; the first run is the plain one.
 int feature_count_of(int run);
 
-/// `rtd run` for it. Runs next to each other, one a place, are in DDS domains of their own.
+/// `rtd run` for it. Runs next to each other, one a place, are in their own DDS domains.
 std::vector<std::string> run_command(const ExperimentOptions& options, const PlannedRun& planned, int place);
 
 }  // namespace rtd::eval

@@ -40,7 +40,7 @@ bool has_route(const std::string& address) {
 Finding interfaces(const bus::NetworkOptions& network) {
   try {
     if (network.loopback_only) return {Verdict::kOk, "network: this host only; --profile lan or wifi adds other hosts"};
-    return {Verdict::kOk, fmt::format("network: {} beside loopback, {}", fmt::join(interface_addresses(network), ", "),
+    return {Verdict::kOk, fmt::format("network: {} besides loopback, {}", fmt::join(interface_addresses(network), ", "),
                                       network.multicast ? "multicast" : "no multicast: each process must name a peer")};
   } catch (const bus::BusError& error) {
     return {Verdict::kFail, std::string("network: ") + error.what()};

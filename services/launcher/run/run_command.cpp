@@ -75,7 +75,7 @@ service::ExitCode exit_code(RunOutcome outcome, bool tracked_any, bool partial) 
   return partial ? service::kPartialLoss : service::kOk;
 }
 
-/// What the launcher leaves in the folder of the run beside what the services wrote.
+/// What the launcher leaves in the folder of the run besides what the services wrote.
 void write_record(const run_record::RunRecord& record, const std::string& out_dir) {
   io::write_file(out_dir + "/trajectory_online.txt", online_trajectory_text(record.frames));
   run_record::write_run_json(record, out_dir + "/run.json");

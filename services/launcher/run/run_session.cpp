@@ -35,7 +35,7 @@ double span_s(const std::vector<run_record::FrameRecord>& frames) {
 std::string restart_effect(const std::string& service) {
   if (service == "camera") return ": it continues behind the last frame";
   if (service == "slam") return ": it continues with the map from its last checkpoint, else with a new one";
-  if (service == "record") return ": it continues in a file beside";
+  if (service == "record") return ": it continues in another file";
   return service == "dense" ? ": static_map.ply starts again" : "";
 }
 

@@ -21,7 +21,7 @@ class OutputFiles {
 
   std::filesystem::path file(std::size_t number) const;
   const std::filesystem::path& folder() const { return folder_; }
-  /// Of a recording of several files, or in a folder of its own. One named file needs none; the folder is the user's.
+  /// Of a recording of several files, or in its own folder. One named file needs none; the folder is the user's.
   std::filesystem::path metadata() const { return numbered_ ? folder_ / "metadata.yaml" : std::filesystem::path(); }
   /// The files of an earlier recording under this name.
   std::vector<std::filesystem::path> existing() const;

@@ -28,7 +28,7 @@ struct Acknowledged {
   std::vector<std::uint64_t> messages;  ///< by topic
 };
 
-/// Makes written data survive a power cut. It has a thread of its own because fdatasync(2) may take long: the durable
+/// Makes written data survive a power cut. It has its own thread because fdatasync(2) may take long: the durable
 /// watermark follows the writing. Thread-safe.
 class SyncThread {
  public:

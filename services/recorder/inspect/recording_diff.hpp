@@ -87,7 +87,7 @@ struct TopicDiff {
   /// By how much the log_time between consecutive messages differs from the other recording; does not count as a
   /// difference.
   double timing_p50_ms = 0, timing_p99_ms = 0;
-  std::size_t out_of_order = 0;              ///< pairs that stand in another order
+  std::size_t out_of_order = 0;              ///< pairs in another order
   std::optional<MessagePlace> first;         ///< the first payload that differs and counts
   std::optional<std::size_t> first_missing;  ///< position in A (or else in B) of the first message without a partner
 

@@ -46,7 +46,7 @@ std::string summary_row(const RecordingReport& report) {
 std::string metadata_rows(const RecordingReport& report) {
   std::string text;
   for (const mcap::Metadata& metadata : report.metadata) {
-    if (metadata.metadata == report.losses()) continue;  // has rows of its own
+    if (metadata.metadata == report.losses()) continue;  // has its own rows
     std::string values;
     for (const auto& [key, value] : metadata.metadata)
       values += fmt::format("{}{}={}", values.empty() ? "" : ", ", key, value);

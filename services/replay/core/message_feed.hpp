@@ -28,7 +28,7 @@ struct FeedOptions {
   std::function<bool(const mcap::Channel&)> wanted;
 };
 
-/// Reads the messages of a recording in order of time, in a thread of its own, ahead of the one thread that plays them.
+/// Reads the messages of a recording in order of time, in its own thread, ahead of the one thread that plays them.
 class MessageFeed {
  public:
   /// Only the feed may use `reader` while the feed exists.

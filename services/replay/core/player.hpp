@@ -23,7 +23,7 @@ class Schedule {
   /// `rate` > 0: 2 is twice as fast as recorded.
   explicit Schedule(double rate) : rate_(rate) {}
 
-  /// The playhead stands at `recorded_ns` now.
+  /// The playhead is at `recorded_ns` now.
   void jump(std::int64_t recorded_ns, std::int64_t now_ns);
   void pause(std::int64_t now_ns);
   void resume(std::int64_t now_ns);

@@ -9,7 +9,7 @@ namespace rtd::slam {
 
 class Vocabulary;
 
-/// Every number of the SLAM core: default beside the member, key, range and meaning in bind().
+/// Every number of the SLAM core: default next to the member, key, range and meaning in bind().
 
 /// One switch for each technique beyond ORB-SLAM2's tracking and mapping, so that its worth can be measured.
 struct Techniques {
@@ -287,7 +287,7 @@ enum class Gravity {
   kImu,    ///< the IMU of SlamConfig::prior
 };
 
-/// An IMU beside the camera, as its data sheet says: docs/theory/inertial.md.
+/// An IMU next to the camera, as its data sheet says: docs/theory/inertial.md.
 struct ImuConfig {
   double gyro_rad_s_rthz = 2e-4;
   double accel_m_s2_rthz = 2e-3;

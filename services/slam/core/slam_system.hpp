@@ -91,7 +91,7 @@ class SlamSystem {
   /// `pending`: what happens to a global adjustment that is under way.
   void finish(PendingAdjustment pending = PendingAdjustment::kAwait) { mapping_.finish(pending); }
 
-  /// Of one map: each has a world frame of its own.
+  /// Of one map: each has its own world frame.
   std::vector<StampedPose> trajectory(MapId id = 0) const {
     return mapping_.read([&](const Map& map) { return compose_trajectory(map, frames_, id); });
   }

@@ -39,7 +39,7 @@ struct TopicRow {
   Rate rate;  ///< `hz` only
 };
 
-/// Sorted by name; another type on the same name has a row of its own.
+/// Sorted by name; another type on the same name has its own row.
 std::vector<TopicRow> rows_of(const std::vector<bus::TopicWriter>& writers);
 
 /// The topics of a domain as a table, and as JSON with everything that writers announce.

@@ -63,7 +63,7 @@ class Outbox {
 
 static_assert(std::endian::native == std::endian::little, "binary messages are little-endian");
 
-/// Appends values as they stand in binary messages: little-endian, packed.
+/// Appends values as in binary messages: little-endian, packed.
 class ByteWriter {
  public:
   template <class... T>
@@ -85,7 +85,7 @@ class ByteWriter {
     put(static_cast<std::uint32_t>(text.size()));
     put_bytes(text.data(), text.size());
   }
-  /// Overwrites a value that stands at `position`.
+  /// Overwrites the value at `position`.
   template <class T>
   void set(std::size_t position, T value) {
     std::memcpy(bytes_.data() + position, &value, sizeof(T));

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// The depth of the camera as colours, beside its image.
+// The depth of the camera as colours, next to its image.
 
 import { toBitmap } from "./decode.js";
 import { byId } from "./dom.js";

@@ -49,7 +49,7 @@ export class RobotLayer {
   }
 
   /**
-   * Maps of a robot have world frames of their own: side by side, the current one first, its frame at `at_m` or, with
+   * Maps of a robot have their own world frames: side by side, the current one first, its frame at `at_m` or, with
    * beside, its left edge there. Returns where the next robot may begin.
    */
   arrange(at_m, beside, hiddenMaps) {

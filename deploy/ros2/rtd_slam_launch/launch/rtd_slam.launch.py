@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""Starts RTD-SLAM with topics of a camera driver, a recording or a camera of its own, and RViz if wanted.
+"""Starts RTD-SLAM with topics of a camera driver, a recording or its own camera, and RViz if wanted.
 
     ros2 launch rtd_slam_launch rtd_slam.launch.py color:=/camera/color/image_raw depth:=/camera/depth/image_raw
     ros2 launch rtd_slam_launch rtd_slam.launch.py source:=mcap:/data/office.mcap rviz:=true
@@ -21,7 +21,7 @@ ARGUMENTS = {
     'source': ('', 'where frames come from, as --source of rtd run; empty: the topics color, depth and info', None),
     'color': ('/camera/color/image_raw', 'topic of the colour image', None),
     'depth': ('/camera/aligned_depth_to_color/image_raw', 'topic of the depth image', None),
-    'info': ('', 'topic of the calibration; empty: camera_info beside the colour image', None),
+    'info': ('', 'topic of the calibration; empty: camera_info next to the colour image', None),
     'remappings': ('', 'FROM:=TO, separated by blanks, for color, depth, info, imu and wheel_odometry', None),
     'namespace': ('', 'of the topics and frames of this robot: one name, without a slash within', None),
     'robot': ('', 'the same under the name that RTD-SLAM uses', '--robot'),

@@ -91,7 +91,7 @@ std::optional<SourceFrame> DeviceSource::step() {
   return std::nullopt;
 }
 
-/// Another program gives its images a new size or calibration: they make a camera of their own.
+/// Another program gives its images a new size or calibration: they make their own camera.
 void DeviceSource::begin_again(const std::string& why) {
   report_now(why);
   device_->begin_again();

@@ -29,7 +29,7 @@ struct DeviceOptions {
 };
 
 /// Frames of a device on this host or network: colour and depth paired by the device's stamps, which are put on the
-/// host's clock; depth of a camera of its own is registered to colour. A device that is unplugged, silent or without
+/// host's clock; depth of its own camera is registered to colour. A device that is unplugged, silent or without
 /// pairs is closed and opened again, with a back-off, until the source is stopped; its frames continue with the same
 /// calibration. A recording is played once, with its own stamps; so are, as they come, the images of a camera that
 /// another program runs.

@@ -123,7 +123,7 @@ class Search {
   FoundSequences result() {
     for (const auto& [name, file] : packed_) {
       if (!seen_.contains(sequence_name(dataset_, name)))
-        leave_out(file, "it is still packed: unpack it beside the archive");
+        leave_out(file, "it is still packed: unpack it next to the archive");
     }
     std::ranges::sort(found_.sequences, {}, &Sequence::name);
     return std::move(found_);

@@ -10,7 +10,7 @@
 namespace rtd::eval {
 
 /// Where the camera is in the body whose poses the ground truth has, when they are two: the markers of a motion capture
-/// have axes of their own.
+/// have their own axes.
 struct BodyOffset {
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
   bool of_bonn = false;  ///< the turn is that of the Bonn RGB-D Dynamic Dataset

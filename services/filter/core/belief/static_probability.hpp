@@ -75,7 +75,7 @@ struct FrameKnowledge {
 
 /// Gives every feature its probability to be static, its flags and its object (docs/theory/dynamic_points.md section
 /// 5), marks the improbable ones as removed and, if that leaves too few, keeps the best of the doubtful. Features that
-/// geometry saw moving stay removed. Those on surfaces in question keep their probability, with a flag of their own.
+/// geometry saw moving stay removed. Those on surfaces in question keep their probability, with their own flag.
 std::vector<msg::Feature> weigh_static_probability(std::vector<msg::Feature> features, const FrameKnowledge& known,
                                                    const FilterConfig& config);
 

@@ -207,7 +207,7 @@ EgoMotion RtdJudge::find_ego_motion(const Scene& scene, const Foreground& foregr
     for (std::size_t i = 0; i < excluded.size(); ++i) excluded[i] = std::max(excluded[i], on_doubted[i]);
   }
   EgoMotion ego = estimate_ego_motion(input, config_.ego_motion, config_.geometry);
-  // Objects of a high level have a rule of their own (belief): a second later they may have stopped again.
+  // Objects of a high level have their own rule (belief): a second later they may have stopped again.
   ego.slow_votes = without_votes_on(foreground.may_move, std::move(ego.slow_votes), foreground.clusters);
   return ego;
 }
@@ -224,7 +224,7 @@ DepthEvidence RtdJudge::compare_with_views(const Scene& scene, const Foreground&
       foreground.clusters, ego.votes, ego.old_votes, config_.geometry);
 }
 
-/// Features of what is in question have votes of their own, which know how uncertain the pose without it is. Its depth
+/// Features of what is in question have their own votes, which know how uncertain the pose without it is. Its depth
 /// is compared as that of everything else.
 DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& foreground,
                                       const UndecidedSurfaces& undecided, const EgoMotion& ego,

@@ -26,7 +26,7 @@ class RtdJudge final : public ModeJudge {
  private:
   /// What the classes of the objects imply, before any comparison with earlier views.
   struct Foreground {
-    DepthClusters clusters;  ///< every object is a cluster of its own
+    DepthClusters clusters;  ///< every object is its own cluster
     CellMask high;           ///< per cell, 1 = on an object of a high level
     CellMask may_move;       ///< the same, without those that are known to rest
   };

@@ -74,7 +74,7 @@ std::vector<SceneObject> find_objects(const std::vector<ObjectBox>& boxes, const
                                       const DepthClusters& clusters, const MaskConfig& config);
 inline constexpr std::size_t kMaxObjects = 64;
 
-/// The clusters with each object that is not flat as a cluster of its own: what it touches is then judged without it.
+/// The clusters with each object that is not flat as its own cluster: what it touches is then judged without it.
 DepthClusters separate_objects(DepthClusters clusters, const std::vector<SceneObject>& objects);
 
 }  // namespace rtd::filter

@@ -57,7 +57,7 @@ class GraphBuilder {
   EssentialGraph take() { return std::move(result_); }
 
  private:
-  /// Where a keyframe that exists or existed stands: relative to one that exists.
+  /// Where a keyframe that exists or existed is: relative to one that exists.
   struct VertexPose {
     KeyframeId keyframe;
     Eigen::Isometry3d T_keyframe_camera;

@@ -44,7 +44,7 @@ class GlobalAdjuster {
   GlobalAdjuster(const GlobalAdjuster&) = delete;
   GlobalAdjuster& operator=(const GlobalAdjuster&) = delete;
 
-  /// From now on in a thread of its own, which calls `on_done` when a result waits to be taken.
+  /// From now on in its own thread, which calls `on_done` when a result waits to be taken.
   void run_in_background(std::function<void()> on_done);
   /// Gives up what is running.
   void start(GlobalProblem problem);

@@ -36,7 +36,7 @@ std::optional<Eigen::Vector3d> triangulate(const Eigen::Isometry3d& T_camera_wor
                                            const Eigen::Isometry3d& T_camera_world_2, const Eigen::Vector2d& n2);
 
 /// Joins landmarks that are the same point seen twice: projects the landmarks of the keyframe into its neighbours and
-/// theirs into it; a feature found there becomes an observation, or, if it has a landmark of its own, the landmark
+/// theirs into it; a feature found there becomes an observation, or, if it has its own landmark, the landmark
 /// with fewer observations is removed. docs/theory/mapping.md, "Fusion". Returns how many landmarks were merged.
 int fuse_landmarks(Map& map, KeyframeId keyframe, int neighbours);
 

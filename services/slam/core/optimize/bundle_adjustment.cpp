@@ -41,7 +41,7 @@ double chi2_limit(const BundleOptions& options, const BundleObservation& observa
   return observation.measured.has_depth() ? options.max_chi2_rgbd : options.max_chi2_pixel;
 }
 
-/// One run of Ceres over the present inliers; poses are 6 local parameters around where they stand now.
+/// One run of Ceres over the present inliers; poses are 6 local parameters around their present values.
 class SparseBundle {
  public:
   SparseBundle(BundleProblem& problem, const BundleOptions& options) : problem_(problem), options_(options) {

@@ -23,7 +23,7 @@ class DenseBundle {
 
  private:
   using Matrix63d = Eigen::Matrix<double, 6, 3>;
-  /// Where the camera of an observation stands, and where its landmark's point.
+  /// Where the camera of an observation is, and where its landmark's point.
   struct State {
     std::vector<Eigen::Isometry3d> T_camera_world;
     std::vector<Eigen::Vector3d> points;

@@ -36,7 +36,7 @@ class VocabularyError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// One node of the tree. Children stand in a row; a node without children is a word.
+/// One node of the tree. Children are consecutive; a node without children is a word.
 struct VocabularyNode {
   msg::Descriptor centre{};  ///< the root's is not used
   std::uint32_t first_child = 0;

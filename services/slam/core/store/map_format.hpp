@@ -41,7 +41,7 @@ constexpr std::string_view kMagic{"\x89RTDMAP\n", 8};
 constexpr std::uint32_t kVersion = 2;
 constexpr std::size_t kPreambleBytes = 16;  ///< magic, version, CRC of both: the same in every version
 
-/// What a block holds; the four letters as they stand in the file.
+/// What a block holds; the four letters as in the file.
 enum class BlockTag : std::uint32_t {
   kHead = 0x44414548,       ///< "HEAD"
   kLandmarks = 0x444E414C,  ///< "LAND"

@@ -35,7 +35,7 @@ constexpr int kFewestWitnesses = 8;  ///< two points on one edge must not outwei
 /// A pose with which fewer of the witnesses agree is compared with one of which hardly anything else decides.
 constexpr double kMostOfThem = 0.6, kHardlyAny = 0.01, kClearlyMore = 1.25;
 
-/// What a pose is found from, beside observations with their weights.
+/// What a pose is found from, besides observations with their weights.
 struct RgbdPoseProblem {
   const vision::RgbdProjection& camera;
   const std::vector<Association>& associations;
@@ -61,7 +61,7 @@ void weaken_others(const std::vector<Association>& associations, double factor,
   }
 }
 
-/// What a landmark says of where the camera is: its weight, less with the square of its distance.
+/// How much a landmark counts for where the camera is: its weight, less with the square of its distance.
 double influence_of(const vision::PoseObservation& observation, const Eigen::Vector3d& camera) {
   constexpr double kNearest_m = 0.5;
   const double distance_m = std::max(kNearest_m, (observation.p_world - camera).norm());

@@ -52,7 +52,7 @@ struct Association {
   UnmeasuredDepth unmeasured = {};
 };
 
-/// What the steps need beside frame and map.
+/// What the steps need besides frame and map.
 struct TrackingContext {
   const SlamConfig& config;
   const Clock& now_ns;
