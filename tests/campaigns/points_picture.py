@@ -39,6 +39,9 @@ def outline(mask_file, dark):
 
 def main():
     arguments = [a for a in sys.argv[1:] if a != "--dark"]
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__)
+        sys.exit(0)
     if len(arguments) != 4:
         sys.exit(__doc__)
     report, frame, mask, out = arguments

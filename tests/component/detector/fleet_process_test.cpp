@@ -139,7 +139,7 @@ TEST_F(FleetProcess, refuses_names_that_no_robot_can_have) {
   EXPECT_EQ(wrong.run({"--robots", "anna,1st", "--model", model_}), 2);
   EXPECT_THAT(wrong.output(), HasSubstr("'1st' cannot be a robot's name"));
   EXPECT_EQ(mixed.run({"--robots", "all,anna", "--model", model_}), 2);
-  EXPECT_THAT(mixed.output(), HasSubstr("'all' stands alone"));
+  EXPECT_THAT(mixed.output(), HasSubstr("'all' is given alone"));
 }
 
 TEST_F(FleetProcess, refuses_to_start_without_weights) {

@@ -86,7 +86,7 @@ TEST_F(SupervisedRunTest, without_rtd_eval_it_keeps_the_data_and_names_the_fix) 
   fs::remove(scratch_ / "bin/rtd-eval");
   setenv("PATH", "/usr/bin:/bin", 1);
   EXPECT_EQ(rtd_.run(arguments()), 1);
-  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("no report: rtd-eval is neither beside rtd"),
+  EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("no report: rtd-eval is neither next to rtd"),
                                    HasSubstr("then run 'rtd report " + (scratch_ / "out")), HasSubstr("no frame got")));
   EXPECT_FALSE(fs::exists(scratch_ / "out/report.json"));
   RtdCommand later(RTD_EVAL_EXECUTABLE);
@@ -272,7 +272,7 @@ TEST_F(SupervisedRunTest, quiet_shows_problems_only) {
 TEST_F(SupervisedRunTest, a_missing_service_is_named_before_anything_starts) {
   fs::remove(scratch_ / "bin/rtd-slam");
   EXPECT_EQ(rtd_.run(arguments()), 2);
-  EXPECT_THAT(rtd_.output(), HasSubstr("rtd-slam is neither beside rtd"));
+  EXPECT_THAT(rtd_.output(), HasSubstr("rtd-slam is neither next to rtd"));
   EXPECT_FALSE(fs::exists(scratch_ / "out/logs/filter.log"));
 }
 

@@ -76,7 +76,7 @@ TEST_F(EnclaveTest, a_key_that_is_not_the_certificates_is_refused) {
 TEST_F(EnclaveTest, permissions_of_another_enclave_are_refused) {
   const std::string keystore = create("k");
   replace(keystore + "/enclaves/b/permissions.p7s", keystore + "/enclaves/a/permissions.p7s");
-  EXPECT_THAT(refusal(keystore), HasSubstr("is for CN=/b, the certificate beside it for CN=/a"));
+  EXPECT_THAT(refusal(keystore), HasSubstr("is for CN=/b, the certificate next to it for CN=/a"));
 }
 
 TEST_F(EnclaveTest, edited_permissions_are_refused) {
