@@ -11,8 +11,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -105,15 +108,27 @@ bool is_segment(std::string_view name) {
   return (name.starts_with("fastrtps_") || name.starts_with("fastdds_")) && name.find("port") == std::string_view::npos;
 }
 
-/// What is in the file now, in memory of this process; negative when there is none.
+/// What is in the file now, in memory of this process; holes stay holes. Negative when there is none, or when it and
+/// what was copied before are more than any of our own programs has: memory is not for others to take.
 int copy_of(int file) {
+  constexpr std::int64_t kMostBytes = 64 << 20, kBlockBytes = 512;
+  static std::atomic<std::int64_t> copied_bytes = 0;
   struct stat status {};
+  if (fstat(file, &status) != 0) return -1;
+  std::int64_t left = status.st_blocks * kBlockBytes;
+  if (left > kMostBytes - copied_bytes) {
+    errno = EACCES;
+    return -1;
+  }
+  copied_bytes += left;
   const int copy = memfd_create("segment_of_another_user", MFD_CLOEXEC);
-  if (copy < 0 || fstat(file, &status) != 0) return copy;
-  while (status.st_size > 0) {
-    const ssize_t sent = sendfile(copy, file, nullptr, static_cast<std::size_t>(status.st_size));
+  if (copy < 0 || ftruncate(copy, status.st_size) != 0) return copy;
+  for (off_t at = lseek(file, 0, SEEK_DATA); at >= 0 && left > 0; at = lseek(file, at, SEEK_DATA)) {
+    const std::int64_t bytes = std::min<std::int64_t>(left, lseek(file, at, SEEK_HOLE) - at);
+    lseek(copy, at, SEEK_SET);
+    const ssize_t sent = sendfile(copy, file, &at, static_cast<std::size_t>(bytes));
     if (sent <= 0) break;
-    status.st_size -= sent;
+    left -= sent;
   }
   return copy;
 }
@@ -146,7 +161,9 @@ int shm_open(const char* name, int flags, mode_t mode) {
   const int theirs = original(name, O_RDONLY, 0);
   if (theirs < 0) return theirs;
   const int copy = copy_of(theirs);
+  const int why = errno;
   close(theirs);
+  errno = why;
   return copy;
 }
 

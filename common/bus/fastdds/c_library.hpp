@@ -27,7 +27,8 @@ namespace rtd::bus::fastdds {
 ///
 /// Segments of another user, who sends to us but does not let us open what was sent: a copy takes their place. Fast DDS
 /// otherwise tries to open the segment for ever, at full speed, and no program is received any more. Only the first
-/// message is in the copy; of the next ones Fast DDS sees that they are not there, and continues.
+/// message is in the copy; of the next ones Fast DDS sees that they are not there, and continues. All copies of a process
+/// together have 64 MiB at most.
 ///
 /// Trial files: before its first ring in a folder, Fast DDS makes and removes a small file in the working directory, to
 /// see how much room its own data takes. It is in /dev/shm instead: not every working directory is writable.

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <cstdio>
 #include <string>
 #include <thread>
@@ -125,6 +127,36 @@ TEST_F(LockFiles, a_segment_of_another_user_that_may_only_be_read_is_copied) {
   EXPECT_EQ(first, 'm') << "theirs is as it was";
   close(file);
   for (const std::string& name : {segment, port}) shm_unlink(name.c_str());
+}
+
+TEST_F(LockFiles, a_segment_of_another_user_costs_no_more_memory_than_is_in_it_and_64_MiB_in_all) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root makes files of another user";
+  const std::string number = std::to_string(getpid()), sparse = "/fastrtps_sparse" + number,
+                    full = "/fastrtps_full" + number;
+  constexpr off_t kGib = 1 << 30, kMib = 1 << 20;
+  int file = shm_open(sparse.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  EXPECT_EQ(ftruncate(file, kGib), 0);
+  EXPECT_EQ(pwrite(file, "message", 8, kGib - 8), 8);
+  close(file);
+  file = shm_open(full.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const std::string mib(kMib, 'x');
+  for (int i = 0; i < 65; ++i) EXPECT_EQ(write(file, mib.data(), mib.size()), kMib);
+  close(file);
+  const pid_t child = fork();
+  if (child == 0) {
+    char text[8] = {};
+    struct stat status {};
+    const bool other_user = setresuid(65534, 65534, 65534) == 0;
+    const int copy = shm_open(sparse.c_str(), O_RDWR, 0);
+    const bool copied = fstat(copy, &status) == 0 && status.st_size == kGib && status.st_blocks * 512 < kMib &&
+                        pread(copy, text, 8, kGib - 8) == 8 && std::string(text) == "message";
+    const bool refused = shm_open(full.c_str(), O_RDWR, 0) < 0 && errno == EACCES;
+    _exit(other_user && copied && refused ? 0 : 1);
+  }
+  int status = 1;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(status, 0);
+  for (const std::string& name : {sparse, full}) shm_unlink(name.c_str());
 }
 
 }  // namespace

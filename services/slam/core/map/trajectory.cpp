@@ -9,6 +9,7 @@
 #include <ostream>
 
 #include "common/geometry/ply.hpp"
+#include "common/msg/stamps.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -32,10 +33,6 @@ struct Accelerations {
   Corrections measured;
 };
 
-double seconds(const StampedPose& from, const StampedPose& to) {
-  return 1e-9 * static_cast<double>(to.stamp_ns - from.stamp_ns);
-}
-
 Accelerations accelerations_of(std::span<const StampedPose> poses) {
   const auto count = static_cast<Eigen::Index>(poses.size());
   Accelerations result{Eigen::SparseMatrix<double>(count - 2, count), Corrections(count - 2, 6)};
@@ -44,7 +41,8 @@ Accelerations accelerations_of(std::span<const StampedPose> poses) {
   };
   for (Eigen::Index row = 0; row < count - 2; ++row) {
     const auto i = static_cast<std::size_t>(row);
-    const double before_s = seconds(poses[i], poses[i + 1]), after_s = seconds(poses[i + 1], poses[i + 2]);
+    const double before_s = msg::minus_s(poses[i + 1].stamp_ns, poses[i].stamp_ns);
+    const double after_s = msg::minus_s(poses[i + 2].stamp_ns, poses[i + 1].stamp_ns);
     const double scale = 2 / ((before_s + after_s) * kSigmaAcceleration);
     result.change.insert(row, row) = scale / before_s;
     result.change.insert(row, row + 1) = -scale / before_s - scale / after_s;
@@ -78,7 +76,7 @@ Corrections smooth(const Accelerations& accelerations, const std::vector<bool>& 
 
 bool is_without_gap(std::span<const StampedPose> poses) {
   return std::adjacent_find(poses.begin(), poses.end(), [](const StampedPose& one, const StampedPose& next) {
-           const double gap_s = seconds(one, next);
+           const double gap_s = msg::minus_s(next.stamp_ns, one.stamp_ns);
            return gap_s <= 0 || gap_s > kMaxGap_s;
          }) == poses.end();
 }
