@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/call_server.hpp"
 #include "common/bus/commands.hpp"
 
 /// Commands on the wire: names of topics and types as ROS 2 forms them, requests and replies as XCDR1.

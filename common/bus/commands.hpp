@@ -5,7 +5,6 @@
 #include <deque>
 #include <functional>
 #include <future>
-#include <list>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -13,7 +12,6 @@
 #include <vector>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/bus/call_server.hpp"
 #include "common/bus/command_registry.hpp"
 
 /// Commands to a running service, over DDS as ROS 2 services: `ros2 service call` and `rtd call` do the same.
@@ -29,62 +27,53 @@ enum class CommandKind {
 /// "std_srvs/srv/Trigger", ...
 std::string ros_type(CommandKind kind);
 
-/// Offers one command while it lives, also to the process itself (Bus::commands()). Requests wait in a bounded queue
-/// (the oldest goes and gets no answer) for a thread of this server, on which the handler runs, one call at a time.
-/// What the handler throws, and a request that cannot be read, becomes an answer without success.
+/// A longer request is refused.
+inline constexpr std::size_t kMaxRequestBytes = 64 * 1024;
+
+/// Offers commands while it lives, also to the process itself (Bus::commands()). What a handler throws, and a request
+/// that cannot be read, becomes an answer without success. Requests wait in bounded queues (the oldest goes and gets no
+/// answer), each with its own thread.
 class CommandServer {
  public:
   using Handler = CommandHandler;
 
-  /// `name`: "slam/reset", below the name of the bus's robot if it has one. Throws BusError: refused.
+  explicit CommandServer(Bus& bus);
+  /// With one command, as by offer_concurrent().
   CommandServer(Bus& bus, const std::string& name, CommandKind kind, Handler handler);
+  /// Waits for running handlers; requests that still wait get no answer.
+  ~CommandServer();
+  CommandServer(const CommandServer&) = delete;
+  CommandServer& operator=(const CommandServer&) = delete;
 
- private:
-  /// In the registry while it lives.
-  class Listed {
-   public:
-    Listed(std::shared_ptr<CommandRegistry> commands, std::string name, Handler handler);
-    ~Listed();
-    Listed(const Listed&) = delete;
-    Listed& operator=(const Listed&) = delete;
-    CommandAnswer handle(CommandKind kind, std::span<const std::byte> cdr) const;
-
-   private:
-    const std::shared_ptr<CommandRegistry> commands_;
-    const std::string name_;
-  };
-  const Listed listed_;
-  CallServer calls_;  // last: it uses the other
-};
-
-/// The commands of a service that has a worker. Their handlers run on the worker's own thread, between two steps of its
-/// work: they may touch all that the worker owns. The caller waits until it is their turn.
-class CommandDesk {
- public:
-  /// `wake`, if any, is called when a request came: the worker may be waiting for other things.
-  explicit CommandDesk(Bus& bus, std::function<void()> wake = {}) : bus_(bus), wake_(std::move(wake)) {}
-  ~CommandDesk() { close(); }
-  CommandDesk(const CommandDesk&) = delete;
-  CommandDesk& operator=(const CommandDesk&) = delete;
-
-  /// As CommandServer. By the worker.
-  void offer(const std::string& name, CommandKind kind, CommandServer::Handler handler);
-  /// For work that is long: the handler runs on its own thread, next to the worker, and may call run().
-  void offer_beside(const std::string& name, CommandKind kind, CommandServer::Handler handler);
+  /// The handler runs on the worker's thread, in serve(), and may touch all that the worker owns; the caller waits.
+  /// `name`: "slam/reset", below the name of the bus's robot if it has one. By the worker. Throws BusError: refused.
+  void offer(const std::string& name, CommandKind kind, Handler handler);
+  /// For work that is long: the handler runs on a thread of the server, one call at a time, and may call run().
+  void offer_concurrent(const std::string& name, CommandKind kind, Handler handler);
   /// Runs it on the worker's thread and waits. Not by the worker.
   CommandAnswer run(std::function<CommandAnswer()> work);
   /// Runs the handlers of the requests that wait. By the worker, often.
   void serve();
-  /// Answers what waits and what still comes with "the service is ending".
+  /// Answers what waits for the worker, and what still comes, with "the service is ending".
   void close();
 
+  /// Any ROS 2 service, by its bytes.
+  struct Service {
+    CallTopics topics;
+    /// Gets the request in CDR, cut off behind kMaxRequestBytes, and returns the reply. Throws nothing.
+    std::function<std::vector<std::byte>(std::span<const std::byte> request)> handler;
+  };
+  /// Their handlers run on one thread of the server. Throws BusError: refused.
+  void offer_services(std::vector<Service> services);
+
  private:
+  class Listener;
+
   Bus& bus_;
-  const std::function<void()> wake_;
   std::mutex mutex_;
   bool closed_ = false;
   std::deque<std::packaged_task<CommandAnswer()>> tasks_;
-  std::list<CommandServer> servers_;  // last: they use the others
+  std::vector<std::unique_ptr<Listener>> listeners_;  // last: they use the others
 };
 
 /// A command that is offered in the domain now.

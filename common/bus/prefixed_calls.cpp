@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/bus/call_server.hpp"
+#include "common/bus/commands.hpp"
 
 namespace rtd::bus {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/bus/backend.hpp"
 #include "common/bus/raw_bus.hpp"
 
-/// Calls as rmw_cyclonedds has them: behind the CDR header of every sample stand 16 bytes, the number of the client
-/// (u64) and that of the request (i64).
+/// Calls as rmw_cyclonedds has them: 16 bytes follow the CDR header of every sample, the number of the client (u64)
+/// and that of the request (i64).
 namespace rtd::bus {
 
 struct PrefixedCall {

@@ -77,7 +77,7 @@ msg::SetParametersResult too_many(std::size_t count) {
 
 /// A request that cannot be read gets an empty reply.
 template <class Request, class Answer>
-bus::CallServer::Handler handler(Answer answer) {
+auto handler(Answer answer) {
   return [answer](std::span<const std::byte> cdr) {
     try {
       Request request;
@@ -96,7 +96,7 @@ bus::CallTopics topics_of(const std::string& node, const char* name, const std::
           dds + "_Response_"};
 }
 
-std::vector<bus::CallServer::Service> services_of(const std::string& node, Parameters& own) {
+std::vector<bus::CommandServer::Service> services_of(const std::string& node, Parameters& own) {
   using msg::ParameterList;
   using msg::ParameterNames;
   const auto on = [&own](auto method) { return [&own, method](const auto& asked) { return (own.*method)(asked); }; };
@@ -245,7 +245,8 @@ msg::SetParametersResult Parameters::apply(const Setting& setting, const Setting
 }
 
 ParameterServer::ParameterServer(bus::Bus& bus, const std::string& service, Heartbeat& heartbeat)
-    : parameters_(service, heartbeat, bus.commands()),
-      server_(bus, services_of(full_name(service, bus.robot()), parameters_)) {}
+    : parameters_(service, heartbeat, bus.commands()), server_(bus) {
+  server_.offer_services(services_of(full_name(service, bus.robot()), parameters_));
+}
 
 }  // namespace rtd::service

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/bus/call_server.hpp"
+#include "common/bus/commands.hpp"
 #include "common/msg/parameters.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/settings.hpp"
@@ -52,7 +52,7 @@ class ParameterServer {
 
  private:
   Parameters parameters_;
-  bus::CallServer server_;  // last: it uses the other
+  bus::CommandServer server_;  // last: it uses the other
 };
 
 }  // namespace rtd::service

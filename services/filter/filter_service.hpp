@@ -128,7 +128,7 @@ class FilterService {
   service::RateLimit defect_log_{std::chrono::seconds(1)}, wait_log_{std::chrono::seconds(1)};
   service::RateLimit misfit_log_{std::chrono::seconds(10)};
   service::RateLimit broken_masks_log_{std::chrono::seconds(10)};  ///< of a bus thread
-  std::optional<bus::CommandDesk> commands_;
+  std::optional<bus::CommandServer> commands_;
   std::thread preparing_;  // these two last: they use the others
 };
 

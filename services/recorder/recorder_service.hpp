@@ -44,10 +44,10 @@ class RecorderService {
   const io::NamedFiles recordings_;
   service::Runtime& runtime_;
   std::shared_ptr<bus::RawBus> bus_;
-  std::optional<RecordingSession> session_;   ///< none while nothing is recorded
-  service::ExitCode result_ = service::kOk;   ///< the worst of all recordings
-  bool ended_early_ = false;                  ///< a recording that was not stopped
-  std::optional<bus::CommandDesk> commands_;  // last: it uses the others
+  std::optional<RecordingSession> session_;     ///< none while nothing is recorded
+  service::ExitCode result_ = service::kOk;     ///< the worst of all recordings
+  bool ended_early_ = false;                    ///< a recording that was not stopped
+  std::optional<bus::CommandServer> commands_;  // last: it uses the others
 };
 
 }  // namespace rtd::recorder

@@ -33,19 +33,19 @@ struct Outcome {
 }  // namespace
 
 ReplayCommands::ReplayCommands(bus::Bus& bus, const RecordedSpan& span, std::function<void(Request)> post)
-    : span_(span), post_(std::move(post)) {
+    : span_(span), post_(std::move(post)), server_(bus) {
   using bus::CommandKind;
   using bus::CommandRequest;
-  servers_.emplace_back(bus, "replay/pause", CommandKind::kSetBool, [this](const CommandRequest& asked) {
+  server_.offer_concurrent("replay/pause", CommandKind::kSetBool, [this](const CommandRequest& asked) {
     return asked.argument == "true" ? ask({Action::kPause}, "paused") : ask({Action::kResume}, "playing");
   });
-  servers_.emplace_back(bus, "replay/step", CommandKind::kTrigger, [this](const CommandRequest&) {
+  server_.offer_concurrent("replay/step", CommandKind::kTrigger, [this](const CommandRequest&) {
     return ask({Action::kStepFrame}, "one frame further, paused");
   });
-  servers_.emplace_back(bus, "replay/seek", CommandKind::kText,
-                        [this](const CommandRequest& asked) { return seek(asked.argument); });
-  servers_.emplace_back(bus, "replay/speed", CommandKind::kText,
-                        [this](const CommandRequest& asked) { return set_rate(asked.argument); });
+  server_.offer_concurrent("replay/seek", CommandKind::kText,
+                           [this](const CommandRequest& asked) { return seek(asked.argument); });
+  server_.offer_concurrent("replay/speed", CommandKind::kText,
+                           [this](const CommandRequest& asked) { return set_rate(asked.argument); });
 }
 
 bus::CommandAnswer ReplayCommands::ask(Request request, const char* what) const {

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <list>
 
 #include "common/bus/commands.hpp"
 #include "services/replay/core/player.hpp"
@@ -30,7 +29,7 @@ class ReplayCommands {
 
   const RecordedSpan span_;
   const std::function<void(Request)> post_;
-  std::list<bus::CommandServer> servers_;  // last: they use the others
+  bus::CommandServer server_;  // last: it uses the others
 };
 
 }  // namespace rtd::replay

@@ -157,18 +157,18 @@ SlamCommands::SlamCommands(bus::Bus& bus, const MapFileConfig& files, const std:
       keeper_(keeper),
       take_map_(std::move(take_map)),
       forget_(std::move(forget)),
-      desk_(bus) {
+      server_(bus) {
   using bus::CommandKind;
   using bus::CommandRequest;
-  desk_.offer("slam/reset", CommandKind::kTrigger, [this](const CommandRequest&) { return reset(); });
-  desk_.offer_beside("slam/save_map", CommandKind::kText,
-                     [this](const CommandRequest& asked) { return save(asked.argument); });
-  desk_.offer_beside("slam/load_map", CommandKind::kText,
-                     [this](const CommandRequest& asked) { return load(asked.argument); });
-  desk_.offer("slam/localize_only", CommandKind::kSetBool,
-              [this](const CommandRequest& asked) { return localize_only(asked.argument == "true"); });
-  desk_.offer_beside("slam/ask", CommandKind::kText,
-                     [this](const CommandRequest& asked) { return ask(asked.argument); });
+  server_.offer("slam/reset", CommandKind::kTrigger, [this](const CommandRequest&) { return reset(); });
+  server_.offer_concurrent("slam/save_map", CommandKind::kText,
+                           [this](const CommandRequest& asked) { return save(asked.argument); });
+  server_.offer_concurrent("slam/load_map", CommandKind::kText,
+                           [this](const CommandRequest& asked) { return load(asked.argument); });
+  server_.offer("slam/localize_only", CommandKind::kSetBool,
+                [this](const CommandRequest& asked) { return localize_only(asked.argument == "true"); });
+  server_.offer_concurrent("slam/ask", CommandKind::kText,
+                           [this](const CommandRequest& asked) { return ask(asked.argument); });
 }
 
 bus::CommandAnswer SlamCommands::reset() {
@@ -193,7 +193,7 @@ bus::CommandAnswer SlamCommands::load(const std::string& name) {
   const std::string file = name.empty() ? files_.load : maps_.to_read(name).string();
   MapContents contents = load_map_file(file, {}, name.empty() ? io::Links::kFollow : io::Links::kRefuse);
   const std::size_t keyframes = contents.keyframes.size(), landmarks = contents.landmarks.size();
-  return desk_.run([&]() -> bus::CommandAnswer {
+  return server_.run([&]() -> bus::CommandAnswer {
     if (std::string difference = take_map_(std::move(contents)); !difference.empty()) return {false, difference};
     SPDLOG_INFO("event=map_loaded_by_command file={} keyframes={} landmarks={}", file, keyframes, landmarks);
     return {true, fmt::format("{} keyframes and {} landmarks loaded from {}; searching the camera's place in it",
@@ -218,7 +218,7 @@ bus::CommandAnswer SlamCommands::ask(const std::string& text) {
   std::string answer;
   if (question->about == Question::About::kDoubt) {
     PoseEvidence evidence;
-    desk_.run([&]() -> bus::CommandAnswer {
+    server_.run([&]() -> bus::CommandAnswer {
       evidence = slam_.evidence();
       return {};
     });

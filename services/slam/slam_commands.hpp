@@ -26,8 +26,8 @@ class SlamCommands {
   SlamCommands(bus::Bus& bus, const MapFileConfig& files, const std::string& maps_folder, SlamSystem& slam,
                MapKeeper& keeper, TakeMap take_map, Forget forget);
   /// Carries out what waits. By the worker, between frames.
-  void serve() { desk_.serve(); }
-  void close() { desk_.close(); }
+  void serve() { server_.serve(); }
+  void close() { server_.close(); }
 
  private:
   bus::CommandAnswer reset();
@@ -42,7 +42,7 @@ class SlamCommands {
   MapKeeper& keeper_;
   const TakeMap take_map_;
   const Forget forget_;
-  bus::CommandDesk desk_;  // last: it uses the others
+  bus::CommandServer server_;  // last: it uses the others
 };
 
 }  // namespace rtd::slam

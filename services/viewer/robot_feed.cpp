@@ -64,8 +64,8 @@ std::set<std::string> shown_robots(const std::vector<std::string>& wire_names) {
   return robots;
 }
 
-RobotFeed::RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Mailbox mailbox)
-    : bus_(std::move(bus)), mirror_(mirror), mailbox_(std::move(mailbox)) {
+RobotFeed::RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Dispatcher dispatcher)
+    : bus_(std::move(bus)), mirror_(mirror), dispatcher_(std::move(dispatcher)) {
   using namespace bus::topics;
   read(tracking_, kTracking, true,
        [](RobotMirror& to, const msg::TrackingResult& result) { to.add(result, finished_ms(result)); });
@@ -85,7 +85,7 @@ void RobotFeed::read(bus::Reader<T>& reader, const bus::Topic<T>& topic, bool wa
   try {
     reader = bus_->reader(topic, [this, take](std::shared_ptr<const T> message) {
       const std::size_t bytes = bytes_of(*message);
-      mailbox_.deliver([&mirror = mirror_, take, message = std::move(message)] { take(mirror, *message); }, bytes);
+      dispatcher_.deliver([&mirror = mirror_, take, message = std::move(message)] { take(mirror, *message); }, bytes);
     });
   } catch (const bus::BusError& error) {
     SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", topic.name, error.what());

@@ -10,7 +10,7 @@
 #include "common/bus/bus.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_hub.hpp"
-#include "services/viewer/mailbox.hpp"
+#include "services/viewer/dispatcher.hpp"
 
 namespace rtd::viewer {
 
@@ -28,7 +28,7 @@ std::set<std::string> shown_robots(const std::vector<std::string>& wire_names);
 class RobotFeed {
  public:
   /// `mirror` outlives the feed.
-  RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Mailbox mailbox);
+  RobotFeed(std::shared_ptr<bus::Bus> bus, RobotMirror& mirror, Dispatcher dispatcher);
 
   /// What is read now besides poses, keyframes and heartbeats.
   void set_options(const PageOptions& wanted);
@@ -40,7 +40,7 @@ class RobotFeed {
 
   const std::shared_ptr<bus::Bus> bus_;
   RobotMirror& mirror_;
-  const Mailbox mailbox_;
+  const Dispatcher dispatcher_;
   std::optional<PageOptions> options_;
   bus::Reader<msg::TrackingResult> tracking_;
   bus::Reader<msg::KeyframeEvent> keyframes_;

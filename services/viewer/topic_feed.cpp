@@ -60,11 +60,11 @@ void add_name(std::vector<std::string>& names, std::string name) {
 
 }  // namespace
 
-TopicFeed::TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Mailbox mailbox, std::vector<std::string> patterns,
+TopicFeed::TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Dispatcher dispatcher, std::vector<std::string> patterns,
                      std::function<void()> robots_changed)
     : bus_(bus),
       hub_(hub),
-      mailbox_(std::move(mailbox)),
+      dispatcher_(std::move(dispatcher)),
       patterns_(std::move(patterns)),
       robots_changed_(std::move(robots_changed)),
       follower_(bus, {.handlers = [this](const bus::RawTopic& topic) { return handlers(entries_.at(topic.name)); },
@@ -74,7 +74,7 @@ TopicFeed::TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Mailbox mailbox, std::v
                           [](const bus::TopicWriter& writer, const bus::BusError& error) {
                             SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", writer.topic.name, error.what());
                           },
-                      .run = [this](std::function<void()> change) { mailbox_.order(std::move(change)); },
+                      .run = [this](std::function<void()> change) { dispatcher_.order(std::move(change)); },
                       .on_demand = true,
                       .reader = {.transient_local = true, .depth = kDepth}}) {}
 
@@ -120,7 +120,7 @@ void TopicFeed::learn_types(const bus::TopicWriter& writer) {
   if (schema_reader_ || writer.topic.type != ros2::kSchemasType) return;
   try {
     bus::RawHandlers handlers;
-    handlers.on_sample = [this](const bus::RawSample& sample) { mailbox_.order([this, sample] { learn(sample); }); };
+    handlers.on_sample = [this](const bus::RawSample& sample) { dispatcher_.order([this, sample] { learn(sample); }); };
     schema_reader_ = bus_.reader(writer.topic, {.reliable = true, .transient_local = true}, std::move(handlers));
   } catch (const bus::BusError& error) {
     SPDLOG_WARN("event=schemas_not_read topic={} cause=\"{}\"", writer.topic.name, error.what());
@@ -152,7 +152,7 @@ void TopicFeed::want(std::uint32_t channel, bool wanted) {
 bus::RawHandlers TopicFeed::handlers(const Entry& entry) {
   bus::RawHandlers handlers;
   handlers.on_sample = [this, channel = entry.channel](const bus::RawSample& sample) {
-    mailbox_.deliver(
+    dispatcher_.deliver(
         [this, channel, sample] {
           if (hub_.wanted(channel)) hub_.publish(channel, sample.source_ns, copy_of(sample.cdr()));
         },

@@ -11,7 +11,7 @@
 #include "common/bus/topic_follower.hpp"
 #include "common/ros2/type_description.hpp"
 #include "services/viewer/core/foxglove_hub.hpp"
-#include "services/viewer/mailbox.hpp"
+#include "services/viewer/dispatcher.hpp"
 
 namespace rtd::viewer {
 
@@ -20,7 +20,7 @@ namespace rtd::viewer {
 class TopicFeed {
  public:
   /// `robots_changed` is called when topics appear or go. Ends with stop().
-  TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Mailbox mailbox, std::vector<std::string> patterns,
+  TopicFeed(bus::RawBus& bus, FoxgloveHub& hub, Dispatcher dispatcher, std::vector<std::string> patterns,
             std::function<void()> robots_changed);
   ~TopicFeed() { stop(); }
   TopicFeed(const TopicFeed&) = delete;
@@ -53,7 +53,7 @@ class TopicFeed {
 
   bus::RawBus& bus_;
   FoxgloveHub& hub_;
-  const Mailbox mailbox_;
+  const Dispatcher dispatcher_;
   const std::vector<std::string> patterns_;
   const std::function<void()> robots_changed_;
   std::map<std::string, Entry> entries_;  ///< by topic

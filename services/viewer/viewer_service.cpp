@@ -188,10 +188,10 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
   }
   if (!site_.has_three())
     SPDLOG_WARN("event=no_three cause=\"{} has no three.js\" fix=\"apt-get install libjs-three\"", RTD_THREE_DIR);
-  mailbox_.emplace([this](Mailbox::Task task) { server_->post(std::move(task)); });
+  dispatcher_.emplace([this](Dispatcher::Task task) { server_->post(std::move(task)); });
   raw_ = bus::connect_raw(raw_options(runtime_));
-  topics_.emplace(*raw_, foxglove_, *mailbox_, config_.topics, [this] { robots_changed_ = true; });
-  if (!config_.read_only) commands_.emplace(runtime_.bus_options, *mailbox_);
+  topics_.emplace(*raw_, foxglove_, *dispatcher_, config_.topics, [this] { robots_changed_ = true; });
+  if (!config_.read_only) commands_.emplace(runtime_.bus_options, *dispatcher_);
 }
 
 /// What the bus's threads have posted runs before the server ends, so the feeds are there until then.
@@ -258,7 +258,7 @@ void ViewerService::find_robots() {
     if (robots_.contains(name)) continue;
     RobotMirror* mirror = page_.robot(name);
     if (mirror == nullptr) continue;
-    robots_.emplace(name, std::make_unique<RobotFeed>(runtime_.bus.of_robot(name), *mirror, *mailbox_));
+    robots_.emplace(name, std::make_unique<RobotFeed>(runtime_.bus.of_robot(name), *mirror, *dispatcher_));
   }
 }
 
@@ -279,14 +279,14 @@ void ViewerService::refresh(std::int64_t now) {
   report();
 }
 
-void ViewerService::call(const std::string& name, const std::string& argument, CommandCaller::Answer answer) {
+void ViewerService::call(const std::string& name, const std::string& argument, CommandQueue::Answer answer) {
   if (!commands_) return answer({false, "this viewer was started with --read-only"});
   commands_->call(name, argument, std::move(answer));
 }
 
 /// One call after the other, pausing first so that a position that is sought stays; the answer comes with the last
 /// one's.
-void ViewerService::control_playback(const foxglove::PlaybackControl& control, CommandCaller::Answer answer) {
+void ViewerService::control_playback(const foxglove::PlaybackControl& control, CommandQueue::Answer answer) {
   const auto& played = foxglove_.played();
   std::vector<std::pair<const char*, std::string>> calls;
   if (control.pause) calls.emplace_back("/replay/pause", "true");
@@ -346,7 +346,7 @@ void ViewerService::report() {
   for (const auto& [name, feed] : robots_) left_out += feed->mirror().map().left_out();
   runtime_.heartbeat.set_metric(service::metric::kMapItemsLeftOut, static_cast<double>(left_out));
   runtime_.heartbeat.set_metric(service::metric::kMessagesDropped,
-                                static_cast<double>(mailbox_->dropped() + foxglove_.dropped()));
+                                static_cast<double>(dispatcher_->dropped() + foxglove_.dropped()));
 }
 
 void ViewerService::print_address() const {

@@ -12,7 +12,7 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
-#include "services/viewer/command_caller.hpp"
+#include "services/viewer/command_queue.hpp"
 #include "services/viewer/core/foxglove_hub.hpp"
 #include "services/viewer/core/metrics_text.hpp"
 #include "services/viewer/core/page_hub.hpp"
@@ -78,8 +78,8 @@ class ViewerService {
 
  private:
   FoxgloveHooks foxglove_hooks();
-  void call(const std::string& name, const std::string& argument, CommandCaller::Answer answer);
-  void control_playback(const foxglove::PlaybackControl& control, CommandCaller::Answer answer);
+  void call(const std::string& name, const std::string& argument, CommandQueue::Answer answer);
+  void control_playback(const foxglove::PlaybackControl& control, CommandQueue::Answer answer);
   std::unique_ptr<Session> open(const std::string& subprotocol, Rights rights);
   Reports reports() const;
   std::vector<WatchedService> watched_services() const;
@@ -99,9 +99,9 @@ class ViewerService {
   PageHub page_;
   std::shared_ptr<bus::RawBus> raw_;
   std::unique_ptr<WebServer> server_;
-  std::optional<Mailbox> mailbox_;
+  std::optional<Dispatcher> dispatcher_;
   std::optional<TopicFeed> topics_;
-  std::optional<CommandCaller> commands_;  ///< none: read-only
+  std::optional<CommandQueue> commands_;  ///< none: read-only
   std::map<std::string, std::unique_ptr<RobotFeed>> robots_;
   bool robots_changed_ = true;
   std::int64_t refreshed_ns_ = 0;

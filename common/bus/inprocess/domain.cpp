@@ -45,12 +45,12 @@ bool match(WriterEndpoint& writer, ReaderEndpoint& reader) {
 }
 
 void deliver(ReaderEndpoint& reader, const Message& message) {
-  if (!reader.mailbox.deliver(message)) reader.status.report_lost(++reader.lost);
+  if (!reader.deliveries.deliver(message)) reader.status.report_lost(++reader.lost);
 }
 
 }  // namespace
 
-bool Mailbox::deliver(Message message) {
+bool DeliveryQueue::deliver(Message message) {
   bool kept_all = true;
   {
     const std::lock_guard lock(mutex_);
@@ -64,7 +64,7 @@ bool Mailbox::deliver(Message message) {
   return kept_all;
 }
 
-bool Mailbox::handle_one() {
+bool DeliveryQueue::handle_one() {
   std::unique_lock lock(mutex_);
   if (messages_.empty()) return false;
   Message message = std::move(messages_.front());

@@ -24,9 +24,9 @@ struct Message {
 
 /// What waits for one reader: at most `depth` messages; one more pushes the oldest out, as a keep-last history does.
 /// Thread-safe.
-class Mailbox {
+class DeliveryQueue {
  public:
-  Mailbox(int depth, std::function<void(Message)> on_message)
+  DeliveryQueue(int depth, std::function<void(Message)> on_message)
       : depth_(static_cast<std::size_t>(depth)),
         on_message_(std::move(on_message)),
         thread_([this] { return handle_one(); }) {}
@@ -63,16 +63,16 @@ struct WriterEndpoint {
 struct ReaderEndpoint {
   ReaderEndpoint(EndpointKind what, StatusCallbacks callbacks, std::function<void(Message)> on_message)
       : kind(std::move(what)),
-        mailbox(kind.qos.depth, std::move(on_message)),
-        status(std::move(callbacks), mailbox.thread()) {}
-  ~ReaderEndpoint() { mailbox.thread().stop(); }  // it uses the others
+        deliveries(kind.qos.depth, std::move(on_message)),
+        status(std::move(callbacks), deliveries.thread()) {}
+  ~ReaderEndpoint() { deliveries.thread().stop(); }  // it uses the others
   ReaderEndpoint(const ReaderEndpoint&) = delete;
   ReaderEndpoint& operator=(const ReaderEndpoint&) = delete;
 
   EndpointKind kind;
   WriterId id{};  ///< given by the domain
-  int lost = 0;   ///< messages pushed out of the full mailbox, guarded by the domain
-  Mailbox mailbox;
+  int lost = 0;   ///< messages pushed out of the full queue, guarded by the domain
+  DeliveryQueue deliveries;
   StatusReporter status;
 };
 

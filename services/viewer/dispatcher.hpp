@@ -13,10 +13,10 @@ namespace rtd::viewer {
 
 /// Hands work from the bus's threads to the viewer's, bounded in number and bytes: if that one falls behind, messages
 /// are dropped and counted, changes of topics are not. Thread-safe; copies share one count.
-class Mailbox {
+class Dispatcher {
  public:
   using Task = std::function<void()>;
-  explicit Mailbox(std::function<void(Task)> post) : post_(std::move(post)) {}
+  explicit Dispatcher(std::function<void(Task)> post) : post_(std::move(post)) {}
 
   /// A message, which may be dropped. `bytes`: of memory that the task keeps until it has run.
   void deliver(Task task, std::size_t bytes) const {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/viewer/command_caller.hpp"
+#include "services/viewer/command_queue.hpp"
 
 #include <utility>
 
@@ -23,29 +23,29 @@ bus::BusOptions named(bus::BusOptions options) {
 
 }  // namespace
 
-CommandCaller::CommandCaller(const bus::BusOptions& options, Mailbox mailbox)
-    : mailbox_(std::move(mailbox)), client_(named(options)), thread_([this] { work(); }) {}
+CommandQueue::CommandQueue(const bus::BusOptions& options, Dispatcher dispatcher)
+    : dispatcher_(std::move(dispatcher)), client_(named(options)), thread_([this] { work(); }) {}
 
-CommandCaller::~CommandCaller() {
+CommandQueue::~CommandQueue() {
   calls_.close();
   thread_.join();
 }
 
-void CommandCaller::call(const std::string& name, const std::string& argument, Answer answer) {
+void CommandQueue::call(const std::string& name, const std::string& argument, Answer answer) {
   if (calls_.size() >= kMaxWaiting) return answer({false, "too many calls are waiting; try again"});
   calls_.push({name, argument, std::move(answer)});
 }
 
-void CommandCaller::work() {
+void CommandQueue::work() {
   while (auto call = calls_.pop()) {
     const CommandResult result = carry_out(*call);
     SPDLOG_INFO("event=command name={} argument=\"{}\" success={} answer=\"{}\"", call->name, call->argument,
                 result.success, result.message);
-    mailbox_.order([answer = std::move(call->answer), result] { answer(result); });
+    dispatcher_.order([answer = std::move(call->answer), result] { answer(result); });
   }
 }
 
-CommandResult CommandCaller::carry_out(const Call& call) {
+CommandResult CommandQueue::carry_out(const Call& call) {
   try {
     const bus::CommandAnswer answer = client_.call(call.name, call.argument, timeout_of(call.name));
     return {answer.success, answer.message};

@@ -11,20 +11,20 @@
 #include "common/bus/commands.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "services/viewer/core/command_forms.hpp"
-#include "services/viewer/mailbox.hpp"
+#include "services/viewer/dispatcher.hpp"
 
 namespace rtd::viewer {
 
 /// Calls commands of the domain for clients, one after the other, in its own thread: a call may take seconds.
-class CommandCaller {
+class CommandQueue {
  public:
   using Answer = std::function<void(CommandResult)>;
 
-  /// Answers are ordered through the mailbox. Throws BusError.
-  CommandCaller(const bus::BusOptions& options, Mailbox mailbox);
-  ~CommandCaller();
-  CommandCaller(const CommandCaller&) = delete;
-  CommandCaller& operator=(const CommandCaller&) = delete;
+  /// Answers are ordered through the dispatcher. Throws BusError.
+  CommandQueue(const bus::BusOptions& options, Dispatcher dispatcher);
+  ~CommandQueue();
+  CommandQueue(const CommandQueue&) = delete;
+  CommandQueue& operator=(const CommandQueue&) = delete;
 
   /// What is offered now.
   std::vector<bus::FoundCommand> commands() const { return client_.commands(); }
@@ -39,7 +39,7 @@ class CommandCaller {
   void work();
   CommandResult carry_out(const Call& call);
 
-  const Mailbox mailbox_;
+  const Dispatcher dispatcher_;
   bus::CommandClient client_;
   concurrency::BoundedQueue<Call> calls_{kMaxWaiting, concurrency::Overflow::kBlock};
   static constexpr std::size_t kMaxWaiting = 16;
