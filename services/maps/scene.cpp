@@ -27,13 +27,13 @@ double reprojection_error_px(const Scene& scene, const Eigen::Vector3d& p_camera
 }
 
 /// Two lines: the pose, then the landmarks that it sees. COLMAP counts images from 1.
-std::string image_text(const Scene& scene, const View& view, std::map<slam::LandmarkId, Track>& tracks) {
-  const slam::Keyframe& keyframe = *view.keyframe;
+std::string image_text(const Scene& scene, const SceneImage& image, std::map<slam::LandmarkId, Track>& tracks) {
+  const slam::Keyframe& keyframe = *image.keyframe;
   const Eigen::Isometry3d T_camera_world = keyframe.T_world_camera.inverse();
   const Eigen::Quaterniond q(T_camera_world.linear());
   const Eigen::Vector3d t = T_camera_world.translation();
   std::string text = fmt::format("{} {:.12f} {:.12f} {:.12f} {:.12f} {:.9f} {:.9f} {:.9f} 1 {}\n", keyframe.id + 1,
-                                 q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), view.image);
+                                 q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(), image.file);
   std::size_t place = 0;
   for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     const auto point = scene.points.find(keyframe.landmarks[i]);
@@ -48,13 +48,13 @@ std::string image_text(const Scene& scene, const View& view, std::map<slam::Land
   return text + '\n';
 }
 
-nlohmann::ordered_json frame_json(const Scene& scene, const View& view) {
-  Eigen::Matrix4d T_world_camera = view.keyframe->T_world_camera.matrix();
+nlohmann::ordered_json frame_json(const Scene& scene, const SceneImage& image) {
+  Eigen::Matrix4d T_world_camera = image.keyframe->T_world_camera.matrix();
   T_world_camera.middleCols<2>(1) *= -1;  // axes of OpenGL: y up, z backwards
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& row : T_world_camera.rowwise()) rows.push_back({row[0], row[1], row[2], row[3]});
-  nlohmann::ordered_json json = {{"file_path", "images/" + view.image}, {"transform_matrix", rows}};
-  if (scene.masked) json["mask_path"] = "masks/" + view.image;
+  nlohmann::ordered_json json = {{"file_path", "images/" + image.file}, {"transform_matrix", rows}};
+  if (scene.masked) json["mask_path"] = "masks/" + image.file;
   return json;
 }
 
@@ -72,7 +72,7 @@ void write_colmap_model(const Scene& scene, const std::filesystem::path& folder)
                                                      c.fx, c.fy, c.cx + 0.5, c.cy + 0.5));
   std::map<slam::LandmarkId, Track> tracks;
   std::string images, points;
-  for (const View& view : scene.views) images += image_text(scene, view, tracks);
+  for (const SceneImage& image : scene.images) images += image_text(scene, image, tracks);
   for (const auto& [id, track] : tracks) {
     const Eigen::Vector3d& p = scene.points.at(id).landmark->position;
     const auto& [red, green, blue] = scene.points.at(id).rgb;
@@ -94,7 +94,7 @@ void write_transforms(const Scene& scene, const std::filesystem::path& folder) {
                                  {"cy", c.cy + 0.5},
                                  {"ply_file_path", "points.ply"},
                                  {"frames", nullptr}};
-  for (const View& view : scene.views) json["frames"].push_back(frame_json(scene, view));
+  for (const SceneImage& image : scene.images) json["frames"].push_back(frame_json(scene, image));
   io::write_file(folder / "transforms.json", service::json_text(json) + '\n');
 }
 

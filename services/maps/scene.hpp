@@ -15,9 +15,9 @@
 namespace rtd::maps {
 
 /// A keyframe whose image is exported.
-struct View {
+struct SceneImage {
   const slam::Keyframe* keyframe;
-  std::string image;  ///< name of its file, and of its mask
+  std::string file;  ///< name of its file, and of its mask
 };
 
 /// A landmark with the colour of the first keyframe that sees it.
@@ -29,9 +29,9 @@ struct ScenePoint {
 /// What Gaussian splatting starts from. Images are undistorted: a pinhole camera.
 struct Scene {
   geometry::CameraModel::Parameters camera;
-  std::vector<View> views;  ///< by time
+  std::vector<SceneImage> images;  ///< by time
   std::map<slam::LandmarkId, ScenePoint> points;
-  bool masked = false;  ///< each view has a mask
+  bool masked = false;  ///< each image has a mask
 
   /// Where a keyframe saw a feature, px of the image; the middle of the first pixel is 0.5, 0.5 as in COLMAP.
   Eigen::Vector2d pixel_of(const slam::Keyframe& keyframe, std::size_t feature) const;

@@ -114,7 +114,7 @@ Scene write_images(const slam::MapContents& contents, const Keyframes& keyframes
       write(folder.path / "images" / name, image);
       if (!mask.empty()) write(folder.path / "masks" / (name + folder.mask_suffix), mask);
     }
-    scene.views.push_back({&keyframe, name});
+    scene.images.push_back({&keyframe, name});
     add_points(scene, contents, keyframe, image);
   }
   return scene;
@@ -170,15 +170,15 @@ int write_scene(const SceneRequest& request, std::ostream& out, std::ostream& er
   const slam::MapContents contents = slam::load_map_file(map);
   const Keyframes keyframes = keyframes_of(contents);
   const Scene scene = write_images(contents, keyframes, *source, run / "masks", folders);
-  const std::size_t without = keyframes.size() - scene.views.size();
-  if (scene.views.empty())
+  const std::size_t without = keyframes.size() - scene.images.size();
+  if (scene.images.empty())
     throw service::ConfigError(
         fmt::format("none of the {} keyframes has an image in {}{}: --source names the source of "
                     "the run",
                     keyframes.size(), source->info().uri, scene.masked ? " and a mask" : ""));
   write_models(scene, request);
   for (const SceneFolder& folder : folders)
-    out << fmt::format("{}: {} keyframes {} masks, {} landmarks\n", folder.path.string(), scene.views.size(),
+    out << fmt::format("{}: {} keyframes {} masks, {} landmarks\n", folder.path.string(), scene.images.size(),
                        scene.masked ? "with" : "without", scene.points.size());
   if (!scene.masked)
     err << "rtd export: no masks: people and moving things will leave ghosts; 'rtd run --dense' keeps the masks\n";

@@ -21,14 +21,14 @@ double share_removed(const msg::TrackingResult& result) {
   return all > 0 ? result.features_removed / all : 0;
 }
 
-View view_of(const msg::TrackingResult& result, double view_removed) {
+ViewState view_of(const msg::TrackingResult& result, double view_removed) {
   constexpr double kCrowded = 0.5;
   constexpr std::uint32_t kFewest = 100;  // features of an image that shows something
   const bool ok = result.state == msg::TrackingState::kOk;
-  if (!ok && result.features_static + result.features_removed < kFewest) return View::kBlind;
-  if (view_removed >= kCrowded) return View::kCrowded;
-  if (ok) return View::kClear;
-  return result.state == msg::TrackingState::kDoubtful ? View::kContradicted : View::kUnknown;
+  if (!ok && result.features_static + result.features_removed < kFewest) return ViewState::kBlind;
+  if (view_removed >= kCrowded) return ViewState::kCrowded;
+  if (ok) return ViewState::kClear;
+  return result.state == msg::TrackingState::kDoubtful ? ViewState::kContradicted : ViewState::kUnknown;
 }
 
 constexpr double kNsPerS = 1e9;
@@ -71,17 +71,17 @@ std::string text(double value) {
 
 }  // namespace
 
-const char* to_string(View view) {
+const char* to_string(ViewState view) {
   switch (view) {
-    case View::kClear:
+    case ViewState::kClear:
       return "clear";
-    case View::kCrowded:
+    case ViewState::kCrowded:
       return "crowded";
-    case View::kContradicted:
+    case ViewState::kContradicted:
       return "contradicted";
-    case View::kBlind:
+    case ViewState::kBlind:
       return "blind";
-    case View::kUnknown:
+    case ViewState::kUnknown:
       break;
   }
   return "unknown";

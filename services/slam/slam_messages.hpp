@@ -16,13 +16,13 @@
 namespace rtd::slam {
 
 /// What is in view, as far as it matters for the pose: docs/integrity.md, "Crowded or lost".
-enum class View { kClear, kCrowded, kContradicted, kBlind, kUnknown };
+enum class ViewState { kClear, kCrowded, kContradicted, kBlind, kUnknown };
 /// For diagnostics: "crowded".
-const char* to_string(View view);
+const char* to_string(ViewState view);
 
 /// How far a pose can be trusted, and why not further.
 struct PoseTrust {
-  View view = View::kUnknown;
+  ViewState view = ViewState::kUnknown;
   double agreement = 0;     ///< share of the recognised landmarks that agree closely with the pose; 0 without one
   double view_removed = 0;  ///< share of the features that the filter removed as moving, over half a second
   double since_ok_s = 0;    ///< since the last frame in state ok, else since the first frame

@@ -120,7 +120,7 @@ DepthFaults::DepthFaults(const SensorFaults& faults, const SensorModel& model, c
   offset_px_ = cv::Point2d(std::cos(direction_rad), std::sin(direction_rad)) * faults.registration_px;
 }
 
-cv::Mat DepthFaults::measure(const DepthView& view, std::uint64_t frame_index) const {
+cv::Mat DepthFaults::measure(const DepthScene& view, std::uint64_t frame_index) const {
   const cv::Mat noise = disparity_noise_ ? disparity_noise_->window(frame_index) : cv::Mat();
   cv::Mat depth = sensor_.measure_depth(view.inverse_depth, frame_index, noise);
   if (faults_.flying_px > 0) fly(depth, view.inverse_depth, frame_index);
@@ -172,7 +172,7 @@ cv::Mat DepthFaults::wrong_sided(const cv::Mat& depth, const cv::Mat& inverse_de
   return moved;
 }
 
-void DepthFaults::lose_by_material(cv::Mat& depth, const DepthView& view, std::uint64_t frame_index) const {
+void DepthFaults::lose_by_material(cv::Mat& depth, const DepthScene& view, std::uint64_t frame_index) const {
   const cv::Mat blobs = blobs_->window(frame_index);
   const float dark_below = blobs_->quantile(faults_.dark_holes),
               monitor_below = blobs_->quantile(faults_.monitor_holes);

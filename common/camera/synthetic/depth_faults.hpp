@@ -32,7 +32,7 @@ class NoiseField {
 };
 
 /// What the depth camera looks at.
-struct DepthView {
+struct DepthScene {
   cv::Mat inverse_depth;  ///< CV_32FC1, 1/m, 0 = nothing there
   cv::Mat material;       ///< CV_8UC1, Material
   cv::Mat color_bgr;      ///< CV_8UC3; dark paint returns little infrared light
@@ -45,12 +45,12 @@ class DepthFaults {
   DepthFaults(const SensorFaults& faults, const SensorModel& model, cv::Size size_px, std::uint64_t seed);
 
   /// What the sensor measures of a view, in its units.
-  cv::Mat measure(const DepthView& view, std::uint64_t frame_index) const;
+  cv::Mat measure(const DepthScene& view, std::uint64_t frame_index) const;
 
  private:
   void fly(cv::Mat& depth, const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
   cv::Mat wrong_sided(const cv::Mat& depth, const cv::Mat& inverse_depth, std::uint64_t frame_index) const;
-  void lose_by_material(cv::Mat& depth, const DepthView& view, std::uint64_t frame_index) const;
+  void lose_by_material(cv::Mat& depth, const DepthScene& view, std::uint64_t frame_index) const;
   void lose_speckle(cv::Mat& depth, std::uint64_t frame_index) const;
   void scale(cv::Mat& depth) const;
   cv::Mat registered(const cv::Mat& depth) const;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/camera/synthetic/movers.hpp"
+#include "common/camera/synthetic/actors.hpp"
 #include "common/camera/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
@@ -127,8 +127,8 @@ const std::vector<SceneSpec>& scene_catalog() {
 }
 
 template <class M>
-void Scene::add(SeededRandom& random, const auto&... of_mover) {
-  movers_.push_back(std::make_unique<M>(random.next(), of_mover..., textures_));
+void Scene::add(SeededRandom& random, const auto&... of_actor) {
+  actors_.push_back(std::make_unique<M>(random.next(), of_actor..., textures_));
 }
 
 Scene::Scene(const SceneSpec& spec, std::uint64_t seed)
@@ -160,7 +160,7 @@ void Scene::add_plot(const SceneSpec& spec, SeededRandom& random) {
 
 Geometry Scene::geometry_at(double t_s) const {
   Geometry geometry{room_, {}};
-  for (const std::unique_ptr<Mover>& mover : movers_) mover->append_to(geometry, t_s);
+  for (const std::unique_ptr<Actor>& actor : actors_) actor->append_to(geometry, t_s);
   return geometry;
 }
 

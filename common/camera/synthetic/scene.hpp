@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "common/camera/synthetic/actors.hpp"
 #include "common/camera/synthetic/camera_path.hpp"
 #include "common/camera/synthetic/corridor.hpp"
 #include "common/camera/synthetic/geometry.hpp"
-#include "common/camera/synthetic/movers.hpp"
 #include "common/camera/synthetic/sensor.hpp"
 
 namespace rtd::camera::synthetic {
@@ -58,12 +58,12 @@ class Scene {
 
  private:
   template <class M>
-  void add(SeededRandom& random, const auto&... of_mover);
+  void add(SeededRandom& random, const auto&... of_actor);
   void add_plot(const SceneSpec& spec, SeededRandom& random);
 
   std::vector<Texture> textures_;
   std::vector<Face> room_;
-  std::vector<std::unique_ptr<Mover>> movers_;
+  std::vector<std::unique_ptr<Actor>> actors_;
   CameraPath camera_path_;
   std::optional<CorridorWalk> walk_;  ///< in a corridor, instead of the path
   Lighting lighting_;

@@ -109,7 +109,7 @@ std::optional<KeyframePoses::Removed> KeyframePoses::update(const msg::KeyframeE
   if (!T_world_keyframe.matrix().allFinite()) return std::nullopt;
   if (keyframes_.size() >= kMax && !keyframes_.contains(id)) return std::nullopt;
   const auto [keyframe, created] =
-      keyframes_.try_emplace(id, Keyframe{event.stamp_ns, T_world_keyframe, T_world_keyframe});
+      keyframes_.try_emplace(id, Poses{event.stamp_ns, T_world_keyframe, T_world_keyframe});
   keyframe->second.T_world_keyframe = T_world_keyframe;
   if (created) by_time_.emplace(event.stamp_ns, id);
   if (created && (newest_ == kNoAnchor || event.stamp_ns >= keyframes_.at(newest_).stamp_ns)) newest_ = id;

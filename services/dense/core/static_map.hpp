@@ -57,13 +57,13 @@ class KeyframePoses {
   void clear() { *this = {}; }
 
  private:
-  struct Keyframe {
+  struct Poses {
     std::int64_t stamp_ns = 0;
     Eigen::Isometry3d T_world_keyframe, T_world_applied;  ///< by the last event; as applied to the map's points
   };
   AnchorId nearest_in_time(std::int64_t stamp_ns) const;
 
-  std::map<AnchorId, Keyframe> keyframes_;
+  std::map<AnchorId, Poses> keyframes_;
   std::set<std::pair<std::int64_t, AnchorId>> by_time_;  ///< stamps of the same keyframes
   AnchorId newest_ = kNoAnchor;
 };

@@ -57,7 +57,7 @@ void RobotLane::receive(const msg::ServiceStatus& status) {
   duty_.observe(claim_of(status), name_of(status), serves(status), service::monotonic_ns());
 }
 
-void RobotLane::update(const View& view) {
+void RobotLane::update(const Update& latest) {
   const std::int64_t now_ns = service::monotonic_ns();
   Duty::Role before, role;
   {
@@ -68,8 +68,8 @@ void RobotLane::update(const View& view) {
   if (role == Duty::Role::kServing && !serving()) take_over();
   if (role != Duty::Role::kServing && serving()) step_down();
   if (role == Duty::Role::kStandby && before != role) SPDLOG_INFO("event=standby cause=\"{}\"", description());
-  follow_camera(view.camera_seen, now_ns);
-  report(view, now_ns);
+  follow_camera(latest.camera_seen, now_ns);
+  report(latest, now_ns);
 }
 
 void RobotLane::take_over() {
@@ -108,12 +108,12 @@ void RobotLane::follow_camera(bool seen, std::int64_t now_ns) {
   SPDLOG_INFO("event={} robot=\"{}\"", wanted ? "reads_images" : "reads_no_images", robot_);
 }
 
-void RobotLane::report(const View& view, std::int64_t now_ns) {
+void RobotLane::report(const Update& latest, std::int64_t now_ns) {
   const std::lock_guard lock(mutex_);
   if (!heartbeat_) return;
   const AnswerSummary summary = stats_.summary(now_ns);
   const std::pair<const char*, double> metrics[] = {{service::metric::kFrames, double(answered_)},
-                                                    {service::metric::kFramesDropped, double(view.dropped)},
+                                                    {service::metric::kFramesDropped, double(latest.dropped)},
                                                     {service::metric::kFramesBroken, double(broken_)},
                                                     {service::metric::kRateHz, summary.rate_hz},
                                                     {service::metric::kLatencyP50Ms, summary.latency_p50_ms},
@@ -126,7 +126,7 @@ void RobotLane::report(const View& view, std::int64_t now_ns) {
   } else if (jpegs_.matched() == 0 || detections_.matched() == 0) {
     heartbeat_->set_state(State::kStarting, "waits for a camera and a filter");
   } else {
-    heartbeat_->set_state(answered_ > 0 ? State::kRunning : State::kReady, view.work);
+    heartbeat_->set_state(answered_ > 0 ? State::kRunning : State::kReady, latest.work);
   }
 }
 

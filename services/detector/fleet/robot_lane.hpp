@@ -25,7 +25,7 @@ class RobotLane {
  public:
   using OnImage = std::function<void(std::shared_ptr<const msg::CompressedImage>)>;
   /// What the lane receives at each update().
-  struct View {
+  struct Update {
     bool camera_seen = false;   ///< a camera of this robot is in the domain
     std::uint64_t dropped = 0;  ///< images that newer ones have replaced
     std::string work;           ///< what computes the boxes and for how many robots, for people
@@ -38,7 +38,7 @@ class RobotLane {
   RobotLane& operator=(const RobotLane&) = delete;
 
   /// Takes over, stands by, opens or closes the reader of images, and reports. To be called often.
-  void update(const View& view);
+  void update(const Update& latest);
   /// The thread that computes the boxes continues.
   void tick();
   /// Publishes, if the lane still serves the robot.
@@ -61,7 +61,7 @@ class RobotLane {
   void take_over();
   void step_down();
   void follow_camera(bool seen, std::int64_t now_ns);
-  void report(const View& view, std::int64_t now_ns);
+  void report(const Update& latest, std::int64_t now_ns);
   std::string name() const;
 
   const std::string robot_;

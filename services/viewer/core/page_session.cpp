@@ -303,7 +303,7 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
   if (sent.view.empty()) {
     if (static_cast<double>(now_ns - sent.view_ns) * hub_.limits_.views_per_s < 1e9 || !views_.allows())
       return std::nullopt;
-    const auto view = robot.newest_view();
+    const auto view = robot.newest_image();
     if (!view) return std::nullopt;
     choose_parts(*view, options(robot.index()), sent);
     if (sent.view.empty()) return std::nullopt;
@@ -316,7 +316,7 @@ std::optional<Frame> PageSession::next_view(const RobotMirror& robot, Sent& sent
 }
 
 /// What the page wants of the view and does not have; the last part goes first.
-void PageSession::choose_parts(const View& view, const PageOptions& wanted, Sent& sent) {
+void PageSession::choose_parts(const AnnotatedImage& view, const PageOptions& wanted, Sent& sent) {
   if (view.stamp_ns != sent.view_stamp_ns) sent.view_parts = {};
   sent.view_stamp_ns = view.stamp_ns;
   struct Part {

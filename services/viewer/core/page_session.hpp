@@ -78,7 +78,7 @@ class PageSession : public Session {
   std::optional<Frame> next_values(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_truth(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> next_view(const RobotMirror& robot, Sent& sent, std::int64_t now_ns);
-  static void choose_parts(const View& view, const PageOptions& wanted, Sent& sent);
+  static void choose_parts(const AnnotatedImage& view, const PageOptions& wanted, Sent& sent);
   std::optional<Frame> next_dense(const RobotMirror& robot, Sent& sent, CloudKind kind) const;
   std::optional<Frame> next_plan(const RobotMirror& robot, Sent& sent) const;
   std::optional<Frame> link_report(std::int64_t now_ns);

@@ -129,7 +129,7 @@ std::optional<double> TruthTrack::error_m(std::int64_t stamp_ns) const {
   return (T_map_truth_ * paired_truth_m_[place] - paired_estimate_m_[place]).norm();
 }
 
-std::size_t View::bytes() const {
+std::size_t AnnotatedImage::bytes() const {
   std::size_t bytes = 0;
   for (const Payload& part : {image, features, mask, boxes, people, depth}) bytes += part ? part->size() : 0;
   return bytes;
@@ -280,9 +280,9 @@ bool RobotMirror::filter_is_late() const {
   return behind_ns >= 0 && behind_ns <= kFilterGoneNs;
 }
 
-std::optional<View> RobotMirror::newest_view() const {
+std::optional<AnnotatedImage> RobotMirror::newest_image() const {
   if (images_.empty() && features_.empty()) return std::nullopt;
-  View view;
+  AnnotatedImage view;
   for (auto image = images_.rbegin(); image != images_.rend() && !view.features; ++image)
     view = {
         .stamp_ns = image->stamp_ns, .image = image->payload, .features = at(features_, image->stamp_ns, kSameFrameNs)};

@@ -74,7 +74,7 @@ enum class CloudKind { kStatic, kMoving };
 inline constexpr std::size_t kCloudKinds = 2;
 
 /// An image with what the other services found in it. Parts that are missing are null.
-struct View {
+struct AnnotatedImage {
   std::int64_t stamp_ns = 0;
   Payload image, features, mask, boxes, people, depth;
   std::size_t bytes() const;
@@ -117,7 +117,7 @@ class RobotMirror {
   /// Poses of about the last minute, some a second, oldest first: the plots of a page that opens later.
   const std::deque<Message>& recent_tracking() const { return recent_tracking_; }
   /// The newest image that the filter has looked at, with its overlays; without a filter, the newest one.
-  std::optional<View> newest_view() const;
+  std::optional<AnnotatedImage> newest_image() const;
   const TruthTrack& truth() const { return truth_; }
   std::vector<msg::ServiceStatus> services() const;
   std::vector<page::ServiceLine> services(std::int64_t now_ns) const;

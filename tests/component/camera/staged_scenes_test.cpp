@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "common/camera/synthetic/movers.hpp"
+#include "common/camera/synthetic/actors.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 

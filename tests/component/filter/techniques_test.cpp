@@ -161,7 +161,8 @@ TEST(Techniques, mover_tracks_give_a_mover_an_identity) {
     std::set<int> ids;
     for (std::uint64_t i = 0; i < 20; ++i) {
       const double block_x = -0.25 + 0.03 * static_cast<double>(i);
-      for (const Mover& mover : filter.apply(scene.render(i, 0, block_x), std::nullopt).movers) ids.insert(mover.id);
+      for (const TrackedMover& mover : filter.apply(scene.render(i, 0, block_x), std::nullopt).movers)
+        ids.insert(mover.id);
     }
     EXPECT_EQ(ids.size(), on ? 1U : 0U);
   }

@@ -15,20 +15,20 @@ constexpr int kWidth = 240, kHeight = 160;
 constexpr float kUnitsPerM = 5000;
 const cv::Range kBox(100, 150);  ///< columns of the near object
 
-DepthView wall_at(float depth_m) {
+DepthScene wall_at(float depth_m) {
   return {cv::Mat(kHeight, kWidth, CV_32FC1, cv::Scalar(1.0F / depth_m)),
           cv::Mat(kHeight, kWidth, CV_8UC1, cv::Scalar(static_cast<int>(Material::kPlain))),
           cv::Mat(kHeight, kWidth, CV_8UC3, cv::Scalar::all(128))};
 }
 
 /// A wall at 4 m and an object before it over the whole height.
-DepthView object_at(float depth_m) {
-  DepthView view = wall_at(4);
+DepthScene object_at(float depth_m) {
+  DepthScene view = wall_at(4);
   view.inverse_depth.colRange(kBox).setTo(1.0F / depth_m);
   return view;
 }
 
-cv::Mat measure(const SensorFaults& faults, const DepthView& view, const SensorModel& model = {}) {
+cv::Mat measure(const SensorFaults& faults, const DepthScene& view, const SensorModel& model = {}) {
   return DepthFaults(faults, model, {kWidth, kHeight}, 1).measure(view, 3);
 }
 
@@ -61,7 +61,7 @@ double middle_of_near(const cv::Mat& depth) {
 }
 
 TEST(DepthFaults, none_leave_the_sensors_own_bits) {
-  const DepthView view = object_at(2);
+  const DepthScene view = object_at(2);
   const cv::Mat plain = Sensor({}, 1).measure_depth(view.inverse_depth, 3);
   EXPECT_EQ(cv::norm(measure({}, view), plain, cv::NORM_L1), 0);
 }
@@ -122,7 +122,7 @@ TEST(DepthFaults, holes_have_the_wanted_share_and_come_in_blobs) {
 }
 
 TEST(DepthFaults, dark_surfaces_and_monitors_lose_most_of_their_depth) {
-  DepthView view = wall_at(2);
+  DepthScene view = wall_at(2);
   view.material.colRange(0, 60).setTo(static_cast<int>(Material::kDark));
   view.color_bgr.colRange(60, 120).setTo(cv::Scalar::all(20));
   view.material.colRange(120, 180).setTo(static_cast<int>(Material::kMonitor));
@@ -172,7 +172,7 @@ TEST(DepthFaults, shadow_lies_left_of_an_object_and_is_as_wide_as_wanted) {
 TEST(DepthFaults, registration_shifts_depth_in_one_direction) {
   SensorFaults faults;
   faults.registration_px = 3;
-  DepthView view = wall_at(4);
+  DepthScene view = wall_at(4);
   view.inverse_depth(cv::Rect(100, 60, 50, 40)).setTo(0.5F);
   const cv::Mat before = measure({}, view), after = measure(faults, view);
   const auto middle = [](const cv::Mat& depth) {
@@ -199,7 +199,7 @@ TEST(DepthFaults, parallax_depends_on_depth) {
 }
 
 TEST(DepthFaults, registration_leaves_no_cracks_in_a_slanted_surface) {
-  DepthView view = wall_at(2);
+  DepthScene view = wall_at(2);
   for (int column = 0; column < kWidth; ++column) {
     view.inverse_depth.col(column).setTo(0.5 + 0.002 * column);
   }
@@ -225,7 +225,7 @@ TEST(DepthFaults, are_the_same_for_the_same_frame_only) {
   faults.wrong_side_px = 2;
   const cv::Size size(kWidth, kHeight);
   const DepthFaults a(faults, {}, size, 1), b(faults, {}, size, 1), other(faults, {}, size, 2);
-  const DepthView view = object_at(2);
+  const DepthScene view = object_at(2);
   const auto differ = [](const cv::Mat& x, const cv::Mat& y) { return cv::norm(x, y, cv::NORM_L1) > 0; };
   EXPECT_FALSE(differ(a.measure(view, 4), b.measure(view, 4)));
   EXPECT_TRUE(differ(a.measure(view, 4), a.measure(view, 5)));

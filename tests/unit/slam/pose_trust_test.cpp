@@ -19,30 +19,30 @@ msg::TrackingResult result_in(TrackingState state, std::uint32_t features_static
   return make_result(result);
 }
 
-View view_of(TrackingState state, std::uint32_t features_static, std::uint32_t features_removed) {
+ViewState view_of(TrackingState state, std::uint32_t features_static, std::uint32_t features_removed) {
   return TrustMonitor().add(result_in(state, features_static, features_removed), 1).view;
 }
 
 TEST(PoseTrust, people_who_fill_the_view_are_a_crowd_in_every_state) {
   for (const TrackingState state : {TrackingState::kOk, TrackingState::kPredicted, TrackingState::kLost})
-    EXPECT_EQ(view_of(state, 500, 500), View::kCrowded);
-  EXPECT_EQ(view_of(TrackingState::kOk, 501, 499), View::kClear);
+    EXPECT_EQ(view_of(state, 500, 500), ViewState::kCrowded);
+  EXPECT_EQ(view_of(TrackingState::kOk, 501, 499), ViewState::kClear);
 }
 
 TEST(PoseTrust, a_camera_that_sees_well_but_is_not_located_is_lost) {
-  EXPECT_EQ(view_of(TrackingState::kLost, 900, 100), View::kUnknown);
-  EXPECT_EQ(view_of(TrackingState::kRelocalizing, 900, 100), View::kUnknown);
+  EXPECT_EQ(view_of(TrackingState::kLost, 900, 100), ViewState::kUnknown);
+  EXPECT_EQ(view_of(TrackingState::kRelocalizing, 900, 100), ViewState::kUnknown);
 }
 
 TEST(PoseTrust, a_dark_or_covered_camera_is_blind) {
-  EXPECT_EQ(view_of(TrackingState::kLost, 60, 39), View::kBlind);
-  EXPECT_EQ(view_of(TrackingState::kLost, 61, 39), View::kUnknown);
-  EXPECT_EQ(view_of(TrackingState::kOk, 60, 0), View::kClear);  // a bare wall that suffices
+  EXPECT_EQ(view_of(TrackingState::kLost, 60, 39), ViewState::kBlind);
+  EXPECT_EQ(view_of(TrackingState::kLost, 61, 39), ViewState::kUnknown);
+  EXPECT_EQ(view_of(TrackingState::kOk, 60, 0), ViewState::kClear);  // a bare wall that suffices
 }
 
 TEST(PoseTrust, doubt_without_a_crowd_is_a_contradiction) {
-  EXPECT_EQ(view_of(TrackingState::kDoubtful, 900, 100), View::kContradicted);
-  EXPECT_STREQ(to_string(View::kContradicted), "contradicted");
+  EXPECT_EQ(view_of(TrackingState::kDoubtful, 900, 100), ViewState::kContradicted);
+  EXPECT_STREQ(to_string(ViewState::kContradicted), "contradicted");
 }
 
 TEST(PoseTrust, one_frame_makes_no_crowd) {
@@ -53,8 +53,8 @@ TEST(PoseTrust, one_frame_makes_no_crowd) {
     return monitor.add(result, 1);
   };
   EXPECT_NEAR(add(0, 100).view_removed, 0.1, 1e-9);
-  EXPECT_EQ(add(33'000'000, 900).view, View::kClear);
-  EXPECT_EQ(add(1'033'000'000, 900).view, View::kCrowded);
+  EXPECT_EQ(add(33'000'000, 900).view, ViewState::kClear);
+  EXPECT_EQ(add(1'033'000'000, 900).view, ViewState::kCrowded);
 }
 
 TEST(PoseTrust, time_since_ok_grows_until_ok_returns) {

@@ -156,7 +156,7 @@ TEST(Diagnostics, level_follows_the_trouble) {
 }
 
 TEST(Diagnostics, name_what_is_in_view_and_how_far_the_pose_is_known) {
-  const PoseTrust trust{View::kCrowded, 0.71, 0.64, 1.5, 0.0123, 0.9};
+  const PoseTrust trust{ViewState::kCrowded, 0.71, 0.64, 1.5, 0.0123, 0.9};
   const msg::DiagnosticArray diagnostics =
       make_diagnostics(result_at(0, Eigen::Isometry3d::Identity()), trust, {}, "", 0);
   std::map<std::string, std::string> values;

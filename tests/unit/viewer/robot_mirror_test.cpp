@@ -52,11 +52,11 @@ msg::CompressedImage image(std::int64_t ms) {
 
 TEST(RobotMirror, a_view_is_an_image_with_the_overlays_of_its_frame) {
   RobotMirror mirror(0);
-  EXPECT_FALSE(mirror.newest_view().has_value());
+  EXPECT_FALSE(mirror.newest_image().has_value());
   mirror.add(image(1000));
   mirror.add(*features(1000));
   mirror.add(image(1033));
-  const auto view = mirror.newest_view();
+  const auto view = mirror.newest_image();
   ASSERT_TRUE(view.has_value());
   EXPECT_EQ(view->stamp_ns, 1'000'000'000) << "the newest that the filter has looked at";
   EXPECT_EQ(at<std::uint8_t>(view->features, 0), 9);
@@ -72,21 +72,21 @@ TEST(RobotMirror, on_a_busy_host_no_image_without_features_replaces_one_with_fea
   mirror.add(*features(1000));
   for (int ms = 1033; ms < 2500; ms += 33) {
     mirror.add(image(ms));
-    EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'000'000'000) << "at " << ms;
+    EXPECT_EQ(mirror.newest_image()->stamp_ns, 1'000'000'000) << "at " << ms;
   }
   mirror.add(*features(1066));
-  EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'066'000'000);
+  EXPECT_EQ(mirror.newest_image()->stamp_ns, 1'066'000'000);
 }
 
 TEST(RobotMirror, without_a_filter_the_image_is_shown_alone) {
   RobotMirror mirror(0);
   mirror.add(image(1000));
-  EXPECT_EQ(mirror.newest_view()->stamp_ns, 1'000'000'000) << "no filter yet";
+  EXPECT_EQ(mirror.newest_image()->stamp_ns, 1'000'000'000) << "no filter yet";
   mirror.add(*features(1005));
   mirror.add(image(2002));
-  EXPECT_FALSE(mirror.newest_view().has_value()) << "its features may still come";
+  EXPECT_FALSE(mirror.newest_image().has_value()) << "its features may still come";
   mirror.add(image(3100));
-  const auto view = mirror.newest_view();
+  const auto view = mirror.newest_image();
   EXPECT_EQ(view->stamp_ns, 3'100'000'000) << "the filter has ended";
   EXPECT_EQ(view->features, nullptr);
 }
@@ -97,19 +97,19 @@ TEST(RobotMirror, a_filter_that_looks_at_other_images_does_not_hide_these) {
     mirror.add(image(ms));
     mirror.add(*features(ms + 10));
   }
-  ASSERT_TRUE(mirror.newest_view().has_value());
-  EXPECT_NE(mirror.newest_view()->image, nullptr);
+  ASSERT_TRUE(mirror.newest_image().has_value());
+  EXPECT_NE(mirror.newest_image()->image, nullptr);
 }
 
 TEST(RobotMirror, depth_stays_for_a_moment_because_it_comes_less_often) {
   RobotMirror mirror(0);
   mirror.add(image(1000));
   mirror.add_depth(image(1000));
-  EXPECT_EQ(at<std::uint8_t>(mirror.newest_view()->depth, 0), 17);
+  EXPECT_EQ(at<std::uint8_t>(mirror.newest_image()->depth, 0), 17);
   mirror.add(image(1100));
-  EXPECT_NE(mirror.newest_view()->depth, nullptr);
+  EXPECT_NE(mirror.newest_image()->depth, nullptr);
   mirror.add(image(1500));
-  EXPECT_EQ(mirror.newest_view()->depth, nullptr);
+  EXPECT_EQ(mirror.newest_image()->depth, nullptr);
 }
 
 json mover_message(double speed_mps, double sigma_mps) {
@@ -132,11 +132,11 @@ TEST(RobotMirror, boxes_of_a_slow_detector_stay_for_a_moment) {
       {.results = {{.hypothesis = {"person", 0.9}}}, .bbox = {.center = {{100, 50}, 0}, .size_x = 20, .size_y = 10}});
   mirror.add(detections);
   mirror.add(image(1300));
-  const json boxes = text(mirror.newest_view()->boxes);
+  const json boxes = text(mirror.newest_image()->boxes);
   EXPECT_EQ(boxes["boxes"][0]["label"], "person");
   EXPECT_EQ(boxes["boxes"][0]["x"], 90);
   mirror.add(image(1500));
-  EXPECT_EQ(mirror.newest_view()->boxes, nullptr);
+  EXPECT_EQ(mirror.newest_image()->boxes, nullptr);
 }
 
 TEST(RobotMirror, a_mask_is_sent_as_runs) {
@@ -146,7 +146,7 @@ TEST(RobotMirror, a_mask_is_sent_as_runs) {
   mask.data[599] = 255;
   mirror.add(mask);
   mirror.add(image(1000));
-  const Payload runs = mirror.newest_view()->mask;
+  const Payload runs = mirror.newest_image()->mask;
   ASSERT_NE(runs, nullptr);
   EXPECT_EQ(at<std::uint8_t>(runs, 1), 2) << "the robot";
   EXPECT_EQ(at<std::uint32_t>(runs, 4), 8U) << "256 + 256 + 87 zeros and one";
@@ -156,7 +156,7 @@ TEST(RobotMirror, a_mask_is_sent_as_runs) {
   mask.header.stamp = stamp(1001);
   mirror.add(mask);
   mirror.add(image(1010));
-  EXPECT_EQ(mirror.newest_view()->mask, nullptr) << "too few bytes";
+  EXPECT_EQ(mirror.newest_image()->mask, nullptr) << "too few bytes";
 }
 
 TEST(RobotMirror, person_masks_are_runs_of_labels_beside_the_boxes) {
@@ -166,14 +166,14 @@ TEST(RobotMirror, person_masks_are_runs_of_labels_beside_the_boxes) {
   masks.data[3] = 2;
   mirror.add_people(masks);
   mirror.add(image(1300));
-  const Payload people = mirror.newest_view()->people;
+  const Payload people = mirror.newest_image()->people;
   ASSERT_NE(people, nullptr) << "as long as the boxes of a slow detector";
   EXPECT_EQ(at<std::uint8_t>(people, 0), 13);
   EXPECT_EQ(at<std::uint32_t>(people, 4), 6U) << "three runs";
   EXPECT_EQ(at<std::uint8_t>(people, 22), 2) << "the label of the second run";
-  EXPECT_EQ(mirror.newest_view()->mask, nullptr);
+  EXPECT_EQ(mirror.newest_image()->mask, nullptr);
   mirror.add(image(1500));
-  EXPECT_EQ(mirror.newest_view()->people, nullptr);
+  EXPECT_EQ(mirror.newest_image()->people, nullptr);
 }
 
 TEST(RobotMirror, a_pose_says_when_it_was_ready_and_what_it_cost) {
@@ -253,8 +253,8 @@ TEST(RobotMirror, stamps_of_any_size_are_only_very_old_or_new) {
   for (const std::int64_t stamp_ns : {kMax, kMin, kMax - 1, kMin + 1}) {
     frame->stamp_ns = stamp_ns;
     mirror.add(*frame);
-    ASSERT_TRUE(mirror.newest_view());
-    EXPECT_EQ(mirror.newest_view()->features, nullptr);
+    ASSERT_TRUE(mirror.newest_image());
+    EXPECT_EQ(mirror.newest_image()->features, nullptr);
   }
   msg::TrackingResult result{};
   result.finished_ns = kMax;

@@ -256,8 +256,8 @@ void MoverTracks::start_track(const MoverSighting& sighting, std::int64_t stamp_
   tracks_.push_back(track);
 }
 
-std::vector<Mover> MoverTracks::movers() const {
-  std::vector<Mover> movers;
+std::vector<TrackedMover> MoverTracks::movers() const {
+  std::vector<TrackedMover> movers;
   for (const Track& track : tracks_) {
     if (!confirmed(track)) continue;
     const double age_s = msg::minus_s(track.now_ns, track.first_ns);

@@ -46,7 +46,7 @@ struct BoxContent {
 BoxContent look_into(const Eigen::AlignedBox3d& box_world, const MoverFrame& frame);
 
 /// A mover without a class, with an identity.
-struct Mover {
+struct TrackedMover {
   int id = 0;  ///< unique until clear()
   Eigen::AlignedBox3d extent_world;
   Eigen::Vector3d velocity_world_m_s = Eigen::Vector3d::Zero();
@@ -68,7 +68,7 @@ class MoverTracks {
   void update(const MoverFrame& frame, const DepthClusters& clusters, const CellMask& moving,
               const FeatureVotes& slow_votes);
   /// Those seen often enough.
-  std::vector<Mover> movers() const;
+  std::vector<TrackedMover> movers() const;
   void clear() { tracks_.clear(); }
 
   static constexpr std::size_t kMaxTracks = 32;

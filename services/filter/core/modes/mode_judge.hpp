@@ -70,7 +70,7 @@ struct Verdict {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< the quick estimate, if the mode makes one
   bool pose_reliable = false;                                        ///< geometry had a pose to compare views with
   std::uint32_t dynamic_clusters = 0;  ///< depth clusters that geometry found moving, with or without a class
-  std::vector<Mover> movers;           ///< without a class, in view or expected to come back
+  std::vector<TrackedMover> movers;    ///< without a class, in view or expected to come back
 };
 
 /// slam's pose of an earlier frame. Poses of two maps cannot be compared.

@@ -68,7 +68,7 @@ Verdict RtdJudge::judge(const Scene& scene, std::vector<msg::Feature> features, 
   clock.finish(msg::kStageEgoMotion);
   const DepthEvidence evidence = compare_with_views(scene, foreground, ego);  // the multi-view check
   const DynamicRegions regions = find_regions(scene, foreground, undecided, ego, evidence);
-  std::vector<Mover> movers = follow_movers(scene, foreground, ego, regions);
+  std::vector<TrackedMover> movers = follow_movers(scene, foreground, ego, regions);
   clock.finish(msg::kStageDepthCheck);
   features = weigh(scene, {undecided.open, regions, evidence, ego}, std::move(features));  // to one probability
   clock.finish(msg::kStageFuse);
@@ -242,8 +242,8 @@ DynamicRegions RtdJudge::find_regions(const Scene& scene, const Foreground& fore
 }
 
 /// Tracks surfaces that move in this very frame. Those of a high level have box tracks instead.
-std::vector<Mover> RtdJudge::follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
-                                           const DynamicRegions& regions) {
+std::vector<TrackedMover> RtdJudge::follow_movers(const Scene& scene, const Foreground& foreground,
+                                                  const EgoMotion& ego, const DynamicRegions& regions) {
   if (!config_.techniques.mover_tracks || !regions.trusted) return {};
   CellMask moving(regions.hold_cs);
   const std::uint8_t longest_cs = to_cs(config_.geometry.memory_s);  // seen in this very frame

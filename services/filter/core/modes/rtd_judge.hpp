@@ -38,8 +38,8 @@ class RtdJudge final : public ModeJudge {
   DepthEvidence compare_with_views(const Scene& scene, const Foreground& foreground, const EgoMotion& ego) const;
   DynamicRegions find_regions(const Scene& scene, const Foreground& foreground, const UndecidedSurfaces& undecided,
                               const EgoMotion& ego, const DepthEvidence& evidence) const;
-  std::vector<Mover> follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
-                                   const DynamicRegions& regions);
+  std::vector<TrackedMover> follow_movers(const Scene& scene, const Foreground& foreground, const EgoMotion& ego,
+                                          const DynamicRegions& regions);
   /// What the comparison with earlier views has led to.
   struct Findings {
     const CellMask& in_question;

@@ -283,7 +283,7 @@ std::vector<ObjectSighting> sight_objects(const std::vector<SceneObject>& object
          .static_probability = probability},
         cells_of[i], moving_cells_of(object.box, shape, verdict.motion));
   }
-  for (const Mover& mover : verdict.movers) {
+  for (const TrackedMover& mover : verdict.movers) {
     if (mover.unseen_s > kSeenLatelyS) continue;
     Eigen::AlignedBox3d box = mover.extent_world;
     box.min().array() -= kMarginM;

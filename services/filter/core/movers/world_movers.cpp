@@ -81,7 +81,7 @@ int owner_of(const Vector3d& p_world, std::uint8_t tint, const std::vector<Expec
 }  // namespace
 
 /// What a frame shows of the tracks.
-struct WorldMovers::View {
+struct WorldMovers::Association {
   const std::vector<ObjectSighting>& sightings;
   Eigen::Isometry3d T_world_camera;
   std::vector<ObjectAppearance> looks;          ///< at the surface of each sighting
@@ -93,7 +93,7 @@ struct WorldMovers::View {
 std::vector<WorldMover> WorldMovers::place(std::int64_t stamp_ns, const Eigen::Isometry3d& T_world_camera,
                                            const std::vector<ObjectSighting>& sightings) {
   predict(stamp_ns);
-  View view = look_around(T_world_camera, sightings);
+  Association view = look_around(T_world_camera, sightings);
   follow(view);
   recognise(view);
   start_others(view);
@@ -112,16 +112,16 @@ void WorldMovers::predict(std::int64_t stamp_ns) {
   }
 }
 
-WorldMovers::View WorldMovers::look_around(const Eigen::Isometry3d& T_world_camera,
-                                           const std::vector<ObjectSighting>& sightings) const {
-  View view{sightings, T_world_camera, {}, {}, {}, std::vector<char>(sightings.size(), 0)};
+WorldMovers::Association WorldMovers::look_around(const Eigen::Isometry3d& T_world_camera,
+                                                  const std::vector<ObjectSighting>& sightings) const {
+  Association view{sightings, T_world_camera, {}, {}, {}, std::vector<char>(sightings.size(), 0)};
   for (const ObjectSighting& sighting : sightings) view.looks.push_back(measure(sighting, T_world_camera));
   assign_points(view);
   return view;
 }
 
 /// Each point to the body that it is expected of.
-void WorldMovers::assign_points(View& view) const {
+void WorldMovers::assign_points(Association& view) const {
   constexpr double kFarPerDecadeM = 0.2, kHardly = 0.01;  // metres for a tenth as much of a tint
   constexpr double kNotSeenM = 0.05, kLatelyS = 0.1;      // in doubt, a point is of a person in view
   std::vector<Expectation> expected;
@@ -152,7 +152,8 @@ void WorldMovers::assign_points(View& view) const {
 
 /// A track in a sighting: its surface, if that is where the track is expected and not of another one; else what the
 /// track has of the rest. Of two boxes that overlap in the image, both show the nearer body's surface.
-std::optional<ObjectAppearance> WorldMovers::look_for(std::size_t track, std::size_t sighting, const View& view) const {
+std::optional<ObjectAppearance> WorldMovers::look_for(std::size_t track, std::size_t sighting,
+                                                      const Association& view) const {
   constexpr double kLatelyS = 0.3;
   constexpr int kSomeHits = 3;
   constexpr std::size_t kFewPoints = 25;
@@ -169,7 +170,7 @@ std::optional<ObjectAppearance> WorldMovers::look_for(std::size_t track, std::si
 }
 
 /// Tracks where they are expected.
-void WorldMovers::follow(View& view) {
+void WorldMovers::follow(Association& view) {
   constexpr double kMaxGateM = 1.5;
   const std::size_t tracks = tracks_.size(), sightings = view.sightings.size();
   CostMatrix costs(static_cast<int>(tracks), static_cast<int>(sightings));
@@ -204,7 +205,7 @@ double WorldMovers::cost_of(const Track& track, const ObjectSighting& sighting, 
 }
 
 /// Tracks elsewhere: what would be new but has the colours of one that is missing and could have come here.
-void WorldMovers::recognise(View& view) {
+void WorldMovers::recognise(Association& view) {
   constexpr double kUnlike = 0.2, kNearM = 1, kSpeed_m_s = 1.5;
   constexpr double kCostPerM = 0.2, kNoLimit = 10;
   CostMatrix costs(static_cast<int>(tracks_.size()), static_cast<int>(view.sightings.size()));
@@ -229,7 +230,7 @@ void WorldMovers::recognise(View& view) {
   }
 }
 
-void WorldMovers::start_others(View& view) {
+void WorldMovers::start_others(Association& view) {
   for (std::size_t j = 0; j < view.sightings.size(); ++j) {
     if (is_new(j, view)) tracks_.push_back(start(view.sightings[j], view.looks[j]));
   }
@@ -237,7 +238,7 @@ void WorldMovers::start_others(View& view) {
 
 /// A surface that no track in view explains: it neither consists of points of theirs nor lies where one is, and a mover
 /// without a class is not part of something with one.
-bool WorldMovers::is_new(std::size_t sighting, const View& view) const {
+bool WorldMovers::is_new(std::size_t sighting, const Association& view) const {
   if (view.taken[sighting] != 0 || !view.sightings[sighting].source) return false;
   double known = 0;
   for (std::size_t i = 0; i < view.share[sighting].size(); ++i) {

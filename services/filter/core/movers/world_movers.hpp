@@ -59,15 +59,15 @@ class WorldMovers {
     double unseen_s() const { return msg::minus_s(now_ns, seen_ns); }
     Eigen::Vector3d middle() const { return body.position() + to_middle_m; }
   };
-  struct View;
+  struct Association;
   void predict(std::int64_t stamp_ns);
-  View look_around(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& sightings) const;
-  void assign_points(View& view) const;
-  std::optional<ObjectAppearance> look_for(std::size_t track, std::size_t sighting, const View& view) const;
-  void follow(View& view);
-  void recognise(View& view);
-  void start_others(View& view);
-  bool is_new(std::size_t sighting, const View& view) const;
+  Association look_around(const Eigen::Isometry3d& T_world_camera, const std::vector<ObjectSighting>& sightings) const;
+  void assign_points(Association& view) const;
+  std::optional<ObjectAppearance> look_for(std::size_t track, std::size_t sighting, const Association& view) const;
+  void follow(Association& view);
+  void recognise(Association& view);
+  void start_others(Association& view);
+  bool is_new(std::size_t sighting, const Association& view) const;
   static double cost_of(const Track& track, const ObjectSighting& sighting, const ObjectAppearance& look);
   static void update(Track& track, const ObjectSighting& sighting, const ObjectAppearance& look);
   static void put(Track& track, const ObjectAppearance& look);

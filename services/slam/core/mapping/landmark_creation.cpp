@@ -32,14 +32,14 @@ bool measures_depth(const Frame& frame, double share) {
 }
 
 /// A keyframe with what the search needs at hand.
-struct View {
+struct PosedKeyframe {
   KeyframeId id;
   const Frame& frame;
   Eigen::Isometry3d T_world_camera, T_camera_world;
   const std::vector<LandmarkId>& landmarks;
   bool has_depth;  ///< of most things that are near
 
-  explicit View(const Keyframe& keyframe)
+  explicit PosedKeyframe(const Keyframe& keyframe)
       : id(keyframe.id),
         frame(*keyframe.frame),
         T_world_camera(keyframe.T_world_camera),
@@ -57,7 +57,7 @@ struct View {
 };
 
 /// Fundamental matrix: x_1^T F x_2 = 0 for homogeneous pixels, docs/theory/mapping.md Eq. (4).
-Eigen::Matrix3d fundamental(const View& view1, const View& view2) {
+Eigen::Matrix3d fundamental(const PosedKeyframe& view1, const PosedKeyframe& view2) {
   const auto inverse_intrinsics = [](const vision::RgbdProjection& c) {
     Eigen::Matrix3d K_inverse;
     K_inverse << 1 / c.fx, 0, -c.cx / c.fx, 0, 1 / c.fy, -c.cy / c.fy, 0, 0, 1;
@@ -69,8 +69,9 @@ Eigen::Matrix3d fundamental(const View& view1, const View& view2) {
 }
 
 /// The feature of `view2` among `free2` that lies on the epipolar line of feature1 and looks like it.
-std::optional<std::uint32_t> search_epipolar(const View& view1, std::uint32_t feature1, const View& view2,
-                                             const std::vector<std::uint32_t>& free2, const Eigen::Matrix3d& F_1_2) {
+std::optional<std::uint32_t> search_epipolar(const PosedKeyframe& view1, std::uint32_t feature1,
+                                             const PosedKeyframe& view2, const std::vector<std::uint32_t>& free2,
+                                             const Eigen::Matrix3d& F_1_2) {
   const msg::Feature& f1 = view1.frame.features[feature1];
   const Eigen::Vector3d line = F_1_2.transpose() * Eigen::Vector3d(f1.u_px, f1.v_px, 1);
   const double line_norm2 = line.head<2>().squaredNorm();
@@ -103,7 +104,7 @@ double depth_parallax_cosine(const Frame& frame, const msg::Feature& feature) {
 }
 
 /// Triangulated or unprojected, whichever has the larger parallax.
-std::optional<Eigen::Vector3d> locate(const View& view1, std::uint32_t feature1, const View& view2,
+std::optional<Eigen::Vector3d> locate(const PosedKeyframe& view1, std::uint32_t feature1, const PosedKeyframe& view2,
                                       std::uint32_t feature2) {
   constexpr double kMaxCosineWithoutDepth = 0.9998;  // 1.15 degrees
   const Eigen::Vector2d n1 = view1.frame.normalized(feature1), n2 = view2.frame.normalized(feature2);
@@ -122,7 +123,7 @@ std::optional<Eigen::Vector3d> locate(const View& view1, std::uint32_t feature1,
   return view2.T_world_camera * view2.frame.unproject(feature2);
 }
 
-bool fits(const View& view, std::uint32_t feature, const Eigen::Vector3d& p_world) {
+bool fits(const PosedKeyframe& view, std::uint32_t feature, const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p_camera = view.T_camera_world * p_world;
   if (p_camera.z() < vision::kMinProjectionDepth_m) return false;
   const auto measured = view.frame.measurement(feature);
@@ -132,8 +133,8 @@ bool fits(const View& view, std::uint32_t feature, const Eigen::Vector3d& p_worl
 }
 
 /// The ratio of distances must be the ratio of octaves within one and a half steps.
-bool scale_agrees(const View& view1, std::uint32_t feature1, const View& view2, std::uint32_t feature2,
-                  const Eigen::Vector3d& p_world) {
+bool scale_agrees(const PosedKeyframe& view1, std::uint32_t feature1, const PosedKeyframe& view2,
+                  std::uint32_t feature2, const Eigen::Vector3d& p_world) {
   constexpr double kSlack = 1.5 * kScaleFactor;
   const double distance1 = (p_world - view1.T_world_camera.translation()).norm();
   const double distance2 = (p_world - view2.T_world_camera.translation()).norm();
@@ -146,14 +147,15 @@ bool scale_agrees(const View& view1, std::uint32_t feature1, const View& view2, 
 
 /// Whether this view should have measured the depth of a point, and did not: two features that only look alike meet
 /// anywhere along their rays, mostly nearer than what a depth sensor leaves out.
-bool misses_depth(const View& view, std::uint32_t feature, const Eigen::Vector3d& p_world, double close_depth_m) {
+bool misses_depth(const PosedKeyframe& view, std::uint32_t feature, const Eigen::Vector3d& p_world,
+                  double close_depth_m) {
   return view.has_depth && !view.frame.measurement(feature).has_depth() &&
          (view.T_camera_world * p_world).z() < close_depth_m;
 }
 
 void create_with_neighbour(Map& map, KeyframeId keyframe, KeyframeId neighbour, double close_depth_m,
                            std::vector<LandmarkId>& created) {
-  const View view1(*map.find_keyframe(keyframe)), view2(*map.find_keyframe(neighbour));
+  const PosedKeyframe view1(*map.find_keyframe(keyframe)), view2(*map.find_keyframe(neighbour));
   const double min_baseline_m = view1.frame.camera.disparity_px_m / view1.frame.camera.fx;
   if ((view1.T_world_camera.translation() - view2.T_world_camera.translation()).norm() < min_baseline_m) return;
   const Eigen::Matrix3d F_1_2 = fundamental(view1, view2);

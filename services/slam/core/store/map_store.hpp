@@ -17,7 +17,7 @@ namespace rtd::slam {
 /// What a map file needs of a map, copied out of it in moments so that mapping can continue while it is written: poses,
 /// links and landmarks are copies, the features of the keyframes are shared.
 struct MapSnapshot {
-  struct Keyframe {
+  struct StoredKeyframe {
     FramePtr frame;
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
     KeyframeId id = kNoKeyframe, parent = kNoKeyframe;
@@ -33,9 +33,9 @@ struct MapSnapshot {
   };
 
   map_format::Head head;
-  io::Bytes landmarks;                   ///< records of blocks LAND
-  std::vector<LandmarkId> landmark_ids;  ///< of these records
-  std::vector<Keyframe> keyframes;       ///< by id
+  io::Bytes landmarks;                    ///< records of blocks LAND
+  std::vector<LandmarkId> landmark_ids;   ///< of these records
+  std::vector<StoredKeyframe> keyframes;  ///< by id
   std::vector<Observation> observations;
   io::Bytes removed;  ///< records of blocks REMV
   io::Bytes loops;    ///< records of blocks LOOP

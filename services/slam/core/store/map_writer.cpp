@@ -90,7 +90,7 @@ class KeyframeEncoder {
  public:
   explicit KeyframeEncoder(const MapSnapshot& snapshot) : snapshot_(snapshot) {}
 
-  void append(const MapSnapshot::Keyframe& keyframe, io::Bytes& out) {
+  void append(const MapSnapshot::StoredKeyframe& keyframe, io::Bytes& out) {
     check(keyframe);
     FieldWriter write(out);
     const auto observations = observations_of(keyframe);
@@ -105,13 +105,13 @@ class KeyframeEncoder {
   }
 
  private:
-  static void check(const MapSnapshot::Keyframe& keyframe) {
+  static void check(const MapSnapshot::StoredKeyframe& keyframe) {
     const std::string name = "map not saved: keyframe " + std::to_string(keyframe.id);
     if (!is_rigid(keyframe.T_world_camera)) throw std::runtime_error(name + " has an impossible pose");
     if (keyframe.frame->features.size() > msg::kMaxFeatures) throw std::runtime_error(name + " has too many features");
   }
   /// Feature and index of the landmark; without landmarks that were left out.
-  std::vector<std::pair<std::uint16_t, std::uint32_t>> observations_of(const MapSnapshot::Keyframe& keyframe) {
+  std::vector<std::pair<std::uint16_t, std::uint32_t>> observations_of(const MapSnapshot::StoredKeyframe& keyframe) {
     std::vector<std::pair<std::uint16_t, std::uint32_t>> found;
     const std::vector<LandmarkId>& ids = snapshot_.landmark_ids;
     for (; next_observation_ < keyframe.observations_end; ++next_observation_) {
@@ -133,7 +133,7 @@ void write_keyframes(BlockWriter& blocks, const MapSnapshot& snapshot) {
     if (!block.empty()) blocks.write(BlockTag::kKeyframes, block);
     block.clear();
   };
-  for (const MapSnapshot::Keyframe& keyframe : snapshot.keyframes) {
+  for (const MapSnapshot::StoredKeyframe& keyframe : snapshot.keyframes) {
     encoder.append(keyframe, block);
     if (block.size() >= kBlockBytes) flush();
   }

@@ -87,7 +87,7 @@ TEST_F(MoverTracksTest, leaves_the_first_second_to_the_memory) {
 TEST_F(MoverTracksTest, keeps_one_identity_and_its_velocity) {
   see_mover(10);
   ASSERT_EQ(tracks_.movers().size(), 1U);
-  const Mover mover = tracks_.movers().front();
+  const TrackedMover mover = tracks_.movers().front();
   const double true_m_s = 10 / kStepS * 1.5 / 525;
   EXPECT_NEAR(mover.velocity_world_m_s.x(), true_m_s, 0.2 * true_m_s);
   EXPECT_NEAR(mover.extent_world.center().z(), 1.5, 0.02);

@@ -27,7 +27,8 @@ vision::Detection person(const cv::Rect& box) {
 }
 
 /// What the filter says of two blocks before a wall when everything before it moves.
-std::vector<ObjectSighting> sight(const std::vector<vision::Detection>& persons, std::vector<Mover> movers = {}) {
+std::vector<ObjectSighting> sight(const std::vector<vision::Detection>& persons,
+                                  std::vector<TrackedMover> movers = {}) {
   vision::RgbdImage image = wall_image(3.0);
   put_block(image, kFar, kFarM);
   put_block(image, kNear, kNearM);
@@ -76,7 +77,7 @@ TEST(ObjectSighting, a_surface_that_moves_beside_all_objects_has_no_source) {
 }
 
 TEST(ObjectSighting, a_mover_without_a_class_does_not_consist_of_a_person) {
-  Mover mover;
+  TrackedMover mover;
   mover.extent_world = {Eigen::Vector3d(-1, -1, 1.3), Eigen::Vector3d(1, 1, 2.4)};  // both of them
   const auto sightings = sight({person(kNear)}, {mover});
   ASSERT_EQ(sightings.size(), 2U);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/synthetic/movers.hpp"
+#include "common/camera/synthetic/actors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -13,9 +13,9 @@
 namespace rtd::camera::synthetic {
 
 /// Something that moves, or may. A pure function of the time; adds the same objects in the same order every time.
-class Mover {
+class Actor {
  public:
-  virtual ~Mover() = default;
+  virtual ~Actor() = default;
   virtual void append_to(Geometry& geometry, double t_s) const = 0;
 };
 
@@ -39,7 +39,7 @@ class FloorPath {
 };
 
 /// A person who walks about with swinging limbs.
-class Walker final : public Mover {
+class Walker final : public Actor {
  public:
   /// Adds the person's textures to `textures`.
   Walker(std::uint64_t seed, const WalkArea& area, FigureLook look, std::vector<Texture>& textures);
@@ -61,7 +61,7 @@ struct MovingBox {
 int paint_box(SeededRandom& random, const Eigen::Vector3f& size_m, std::vector<Texture>& textures);
 
 /// A box that is carried about, bobbing and turning.
-class CarriedBox final : public Mover {
+class CarriedBox final : public Actor {
  public:
   CarriedBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
@@ -73,7 +73,7 @@ class CarriedBox final : public Mover {
 };
 
 /// A person who sits on a chair, rises, walks about and stops. The chair (class "chair") never moves.
-class Sitter final : public Mover {
+class Sitter final : public Actor {
  public:
   struct Habits {
     double sit_s;       ///< until rising
@@ -98,7 +98,7 @@ class Sitter final : public Mover {
 };
 
 /// A person in a wide coat who comes up to the camera, stays in front of it wherever it goes, and leaves again.
-class Blocker final : public Mover {
+class Blocker final : public Actor {
  public:
   Blocker(std::uint64_t seed, const CameraPath& camera, FigureLook look, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
@@ -112,7 +112,7 @@ class Blocker final : public Mover {
 };
 
 /// A box that comes and goes along the camera's viewing axis.
-class AxialBox final : public Mover {
+class AxialBox final : public Actor {
  public:
   AxialBox(std::uint64_t seed, const CameraPath& camera, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
@@ -125,7 +125,7 @@ class AxialBox final : public Mover {
 };
 
 /// A box that glides sideways at 2 to 5 cm/s, to and fro.
-class SlowBox final : public Mover {
+class SlowBox final : public Actor {
  public:
   SlowBox(std::uint64_t seed, const WalkArea& area, std::vector<Texture>& textures);
   void append_to(Geometry& geometry, double t_s) const override;
