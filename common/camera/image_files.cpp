@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/camera/depth_figures.hpp"
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 #include "common/io/input_file.hpp"
 #include "common/vision/image_codecs.hpp"
 

@@ -23,7 +23,7 @@ struct ImageRead {
 /// is one that leads out of the folder `below` (io::open_regular; empty: it may).
 ImageRead read_color(const std::filesystem::path& file, const std::filesystem::path& below = {});
 
-/// Depth in one of kDepthFormats (folder/depth_formats.hpp) as CV_16UC1, or as CV_32FC1 in the file's own unit. 65535
+/// Depth in one of kDepthFormats (depth_formats.hpp) as CV_16UC1, or as CV_32FC1 in the file's own unit. 65535
 /// (saturated) of 16 bits becomes 0, "no measurement". Other pixel types are refused by name.
 ImageRead read_depth(const std::filesystem::path& file, const std::filesystem::path& below = {});
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/service/run_settings.hpp"
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 
 namespace rtd::service {
 struct Runtime;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 #include "tests/support/settled_map.hpp"
 #include "tests/support/walk_world.hpp"

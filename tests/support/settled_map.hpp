@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 
 namespace rtd::test_support {
 

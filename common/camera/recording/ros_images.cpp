@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/camera/depth_figures.hpp"
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/lens_models.hpp"
 #include "common/camera/recording/color_encodings.hpp"

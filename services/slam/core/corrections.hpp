@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/map/trajectory.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
-#include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {

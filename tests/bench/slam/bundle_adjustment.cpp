@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/service/monotonic_clock.hpp"
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "tests/support/bundle_scene.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "tests/fuzz/worst/worst_case.hpp"
 

@@ -7,9 +7,8 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/inertial/preintegration.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/map/trajectory.hpp"
-#include "services/slam/core/slam_config.hpp"
-#include "services/slam/core/tracking/pose_uncertainty.hpp"
 
 namespace rtd::slam {
 

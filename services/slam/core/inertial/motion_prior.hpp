@@ -7,8 +7,8 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/inertial/preintegration.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/inertial/inertial_filter.hpp"
-#include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
 

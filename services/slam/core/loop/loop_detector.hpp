@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/map/map.hpp"
 #include "services/slam/core/place/keyframe_database.hpp"
-#include "services/slam/core/slam_config.hpp"
 
 namespace rtd::slam {
 

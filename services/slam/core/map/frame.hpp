@@ -14,7 +14,7 @@
 #include "common/msg/features.hpp"
 #include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 
 namespace rtd::slam {
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/geometry/se3.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "services/slam/core/map/map.hpp"
 
@@ -31,6 +32,12 @@ void tie_to_living(std::vector<FrameRecord>& frames, const Map& map);
 
 /// The record of a recent frame; null where there is none (any more).
 FrameRecord* find_frame(std::vector<FrameRecord>& frames, std::uint64_t seq);
+
+/// A pose that nothing was measured for.
+struct PredictedPose {
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< grows with time: (x y z rx ry rz), world frame
+};
 
 /// What later poses say of one that was predicted: it is T_world_camera * T_claimed_smoothed.
 struct PoseCorrection {

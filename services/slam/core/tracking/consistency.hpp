@@ -3,7 +3,7 @@
 #pragma once
 
 #include "common/geometry/se3.hpp"
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/tracking/tracking_steps.hpp"
 
 namespace rtd::slam {

@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/map/local_map.hpp"
-#include "services/slam/core/slam_config.hpp"
+#include "services/slam/core/map/trajectory.hpp"
 
 namespace rtd::slam {
 
@@ -29,12 +30,6 @@ Eigen::Isometry3d off_motion(const CameraMotion& motion, const Eigen::Isometry3d
 /// Whether a camera that moved like `motion` can have got there in `gap_s`. If not, frames in between are missing or it
 /// was carried away, and the distance over the gap is not its velocity.
 bool is_steady(const CameraMotion& motion, const Eigen::Isometry3d& T_last_camera, double gap_s);
-
-/// A pose that nothing was measured for.
-struct PredictedPose {
-  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< grows with time: (x y z rx ry rz), world frame
-};
 
 /// The pose `gap_s` after the last measured one: the velocity fades, the doubt grows. docs/theory/tracking.md Eq.
 /// (10), (11).

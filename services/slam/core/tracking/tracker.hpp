@@ -11,9 +11,9 @@
 #include <unordered_map>
 
 #include "common/msg/tracking.hpp"
+#include "services/slam/core/config/slam_config.hpp"
 #include "services/slam/core/inertial/motion_prior.hpp"
 #include "services/slam/core/mapping/mapper.hpp"
-#include "services/slam/core/slam_config.hpp"
 #include "services/slam/core/tracking/consistency.hpp"
 #include "services/slam/core/tracking/pose_uncertainty.hpp"
 #include "services/slam/core/tracking/relocalizer.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 
 namespace rtd::camera {
 namespace {

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 
 namespace rtd::camera {
 namespace {

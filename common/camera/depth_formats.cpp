@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/folder/depth_formats.hpp"
+#include "common/camera/depth_formats.hpp"
 
 #include <zlib.h>
 
