@@ -37,12 +37,6 @@ Function* next(const char* name) {
   return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
 }
 
-/// The owner died: the lock is ours, and others may use it again.
-int recover(pthread_mutex_t* mutex, int result) {
-  if (result != EOWNERDEAD) return result;
-  return pthread_mutex_consistent(mutex);
-}
-
 /// A flag that the C library keeps in the lock.
 bool is_robust(const pthread_mutex_t& mutex) {
   constexpr int kRobust = 16;
@@ -212,22 +206,7 @@ int pthread_mutex_timedlock(pthread_mutex_t* mutex, const timespec* until) noexc
     const timespec again = in_a_second(CLOCK_REALTIME);
     result = original(mutex, &again);
   }
-  return recover(mutex, result);
-}
-
-int pthread_mutex_trylock(pthread_mutex_t* mutex) noexcept {
-  static const auto original = next<int(pthread_mutex_t*)>("pthread_mutex_trylock");
-  return recover(mutex, original(mutex));
-}
-
-int pthread_cond_wait(pthread_cond_t* condition, pthread_mutex_t* mutex) {
-  static const auto original = next<int(pthread_cond_t*, pthread_mutex_t*)>("pthread_cond_wait");
-  return recover(mutex, original(condition, mutex));
-}
-
-int pthread_cond_timedwait(pthread_cond_t* condition, pthread_mutex_t* mutex, const timespec* until) {
-  static const auto original = next<int(pthread_cond_t*, pthread_mutex_t*, const timespec*)>("pthread_cond_timedwait");
-  return recover(mutex, original(condition, mutex, until));
+  return result == EOWNERDEAD ? pthread_mutex_consistent(mutex) : result;  // it is ours, and others may use it again
 }
 
 int pthread_cond_clockwait(pthread_cond_t* condition, pthread_mutex_t* mutex, clockid_t clock, const timespec* until) {
