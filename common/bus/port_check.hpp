@@ -10,9 +10,11 @@
 
 namespace rtd::bus {
 
+inline constexpr std::uint32_t kPortsOfDomain = 250;
+
 /// UDP port on which the participants of a domain receive announcements (RTPS 2.2, 9.6.1.1). They share it.
 constexpr std::uint16_t discovery_port(std::uint32_t domain) {
-  return static_cast<std::uint16_t>(7400 + 250 * domain);
+  return static_cast<std::uint16_t>(7400 + kPortsOfDomain * domain);
 }
 
 /// Throws BusError when another program has the domain's discovery port and does not share it: Fast DDS would start

@@ -22,6 +22,8 @@
 #include <string>
 #include <string_view>
 
+#include "common/bus/host/shm_names.hpp"
+
 namespace rtd::bus::fastdds {
 
 void link_c_library_functions() noexcept {}
@@ -30,6 +32,8 @@ void link_c_library_functions() noexcept {}
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 namespace {
+
+using namespace rtd::bus;
 
 /// The C library's function of this name.
 template <class Function>
@@ -75,7 +79,7 @@ void wait_for_announcements() {
 
 /// Whoever holds such a file listens at a port, or owns a segment.
 bool is_lock_file(std::string_view path) {
-  return path.starts_with("/dev/shm/fast") && (path.ends_with("_el") || path.ends_with("_sl"));
+  return path.starts_with(kFastddsPaths) && (path.ends_with(kPortLock) || path.ends_with(kSegmentLock));
 }
 
 /// The path by which it was opened, also when that has been removed.
@@ -89,7 +93,7 @@ std::string path_of(int file) {
 }
 
 bool is_trial(std::string_view path) {
-  return path.starts_with("fast_datasharing_");
+  return path.starts_with(kShmRing);
 }
 
 std::string in_shared_memory(const char* path) {
@@ -99,7 +103,7 @@ std::string in_shared_memory(const char* path) {
 /// "/fastrtps_4ad1268c17b61829", but no port: whoever sends has one.
 bool is_segment(std::string_view name) {
   name.remove_prefix(name.starts_with('/') ? 1 : 0);
-  return (name.starts_with("fastrtps_") || name.starts_with("fastdds_")) && name.find("port") == std::string_view::npos;
+  return is_shm_transport(name) && name.find(kShmPort) == std::string_view::npos;
 }
 
 /// What is in the file now, in memory of this process; holes stay holes. Negative when there is none, or when it and

@@ -87,7 +87,7 @@ class WithoutServerOfEnvironment {
   std::optional<std::string> value_;
 };
 
-/// Each has two ports of the 250 of its domain. Domain 232 has fewer.
+/// Each has two ports of its domain. Domain 232 has fewer.
 std::uint32_t participant_ids(int domain) {
   constexpr int kLastDomain = 232;
   return domain < kLastDomain ? 119 : 60;
@@ -100,12 +100,12 @@ std::uint32_t sample_port(int domain, std::uint32_t id) {
 }
 
 std::string shm_name(std::uint32_t port) {
-  return std::string(kShmPrefix) + "_port" + std::to_string(port);
+  return std::string(kShmPrefix).append(kShmPort) + std::to_string(port);
 }
 
 /// Whether this process has the lock by which others see that a port in shared memory is listened at.
 bool listens_in_shm_at(std::uint32_t port) {
-  const std::string lock = std::string(kShmFolder) + '/' + shm_name(port) + "_el";
+  const std::string lock = std::string(kShmFolder) + '/' + shm_name(port).append(kPortLock);
   std::error_code unreadable;
   for (const auto& file : std::filesystem::directory_iterator("/proc/self/fd", unreadable)) {
     std::error_code closed;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "common/bus/host/shm_names.hpp"
 #include "common/bus/security_guard.hpp"
 
 namespace rtd::bus::fastdds {
@@ -58,7 +59,7 @@ void hide_shared_memory() {
   namespace fs = std::filesystem;
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);) {
-    const std::size_t at = line.find("/dev/shm/fast");
+    const std::size_t at = line.find(kFastddsPaths);
     if (at == std::string::npos || line.ends_with(" (deleted)")) continue;
     std::error_code not_ours;  // what another user has mapped for us is his
     fs::permissions(line.substr(at), fs::perms::owner_read | fs::perms::owner_write, not_ours);

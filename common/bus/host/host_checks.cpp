@@ -11,6 +11,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "common/bus/host/shm_names.hpp"
+#include "common/bus/port_check.hpp"
 #include "common/bus/qos.hpp"
 #include "common/io/text.hpp"
 
@@ -45,19 +47,18 @@ void warn_socket_buffer(const char* key, std::uint64_t limit, std::uint64_t want
                      std::to_string(wanted));
 }
 
-/// By names as "fastrtps_port24161", "fastdds_port24161". Everyone may open files of mode 666.
+/// Everyone may open files of mode 666.
 std::map<std::uint32_t, std::uint32_t> ports_of_others(const std::string& shm_dir) {
-  constexpr std::string_view kPort = "_port";
   constexpr mode_t kReadAndWrite = S_IROTH | S_IWOTH;
   std::map<std::uint32_t, std::uint32_t> found;
   std::error_code none;
   for (const auto& file : std::filesystem::directory_iterator(shm_dir, none)) {
     const std::string name = file.path().filename();
-    const std::size_t port = name.find(kPort);
+    const std::size_t port = name.find(kShmPort);
     struct stat status {};
-    if (!name.starts_with("fast") || port == std::string::npos || stat(file.path().c_str(), &status) != 0) continue;
+    if (!is_shm_transport(name) || port == std::string::npos || stat(file.path().c_str(), &status) != 0) continue;
     if (status.st_uid == geteuid() || (status.st_mode & kReadAndWrite) == kReadAndWrite) continue;
-    if (const auto number = io::parse_number(name.substr(port + kPort.size()));
+    if (const auto number = io::parse_number(name.substr(port + kShmPort.size()));
         number && *number > 0 && *number < 65536)
       found[static_cast<std::uint32_t>(*number)] = status.st_uid;
   }
@@ -93,8 +94,7 @@ void require_shared_memory(const BusOptions& options, const HostLimits& limits) 
 }
 
 std::string why_not_shared_memory(const BusOptions& options, const HostLimits& limits) {
-  constexpr std::uint32_t kFirst = 7400, kPortsOfDomain = 250;
-  const std::uint32_t first = kFirst + kPortsOfDomain * static_cast<std::uint32_t>(options.domain);
+  const std::uint32_t first = discovery_port(options.domain);
   const auto port = limits.closed_ports.lower_bound(first);
   if (options.vendor != "fastdds" || port == limits.closed_ports.end() || port->first >= first + kPortsOfDomain)
     return {};

@@ -9,11 +9,10 @@
 #include <filesystem>
 #include <thread>
 
+#include "common/bus/host/shm_names.hpp"
 #include "common/io/fd_writing.hpp"
 
 namespace rtd::bus {
-
-inline constexpr char kShmFolder[] = "/dev/shm";
 
 /// The folder of shared memory, with one process at a time that chooses a name in it or removes what was left there.
 /// Nothing of the lock stays, and that of a killed process ends. Anyone may hold it: who has waited for `patience`

@@ -24,12 +24,10 @@
 
 #include "common/bus/host/ring_folder.hpp"
 #include "common/bus/host/shm_folder.hpp"
+#include "common/bus/host/shm_names.hpp"
 
 namespace rtd::bus {
 namespace {
-
-/// Fast DDS's transport and data sharing.
-const std::vector<std::string> kNameParts = {"fastrtps_", "fastdds_", "fast_datasharing_"};
 
 /// A file, whatever its name is now: device and inode.
 using FileId = std::pair<std::uint64_t, std::uint64_t>;
@@ -62,8 +60,8 @@ using Group = std::vector<Candidate>;
 using Groups = std::map<std::string, Group>;
 
 bool has_vendor_name(std::string_view text) {
-  return std::any_of(kNameParts.begin(), kNameParts.end(),
-                     [&](const std::string& part) { return text.find(part) != std::string_view::npos; });
+  return std::ranges::any_of(kShmNames,
+                             [&](std::string_view part) { return text.find(part) != std::string_view::npos; });
 }
 
 /// Names in a folder without `.` and `..`; errno says why there are none.
@@ -163,19 +161,16 @@ ShmUsers find_shm_users(const std::string& proc_dir) {
 }
 
 /// Whether a file has a name that our vendors give.
-bool is_vendor_shm_name(const std::string& name) {
-  return std::any_of(kNameParts.begin(), kNameParts.end(), [&](const std::string& part) {
-    return name.rfind(part, 0) == 0 || name.rfind("sem." + part, 0) == 0;
-  });
+bool is_vendor_shm_name(std::string_view name) {
+  if (name.starts_with(kSemaphore)) name.remove_prefix(kSemaphore.size());
+  return std::ranges::any_of(kShmNames, [&](std::string_view part) { return name.starts_with(part); });
 }
 
 /// What belongs together: the lock and semaphore of a port or segment have its name with a prefix or suffix.
 std::string shm_group(const std::string& name) {
-  std::string group = name.rfind("sem.", 0) == 0 ? name.substr(4) : name;
-  for (const std::string suffix : {"_mutex", "_el", "_sl"}) {
-    const std::size_t at = group.size() - std::min(group.size(), suffix.size());
-    if (group.compare(at, std::string::npos, suffix) == 0) return group.substr(0, at);
-  }
+  const std::string group = name.starts_with(kSemaphore) ? name.substr(kSemaphore.size()) : name;
+  for (const std::string_view suffix : {kMakingLock, kPortLock, kSegmentLock})
+    if (group.ends_with(suffix)) return group.substr(0, group.size() - suffix.size());
   return group;
 }
 

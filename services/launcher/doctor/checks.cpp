@@ -29,7 +29,7 @@ bool has_route(const std::string& address) {
   if (probe < 0) return true;
   sockaddr_in target{};
   target.sin_family = AF_INET;
-  target.sin_port = htons(7400);
+  target.sin_port = htons(bus::discovery_port(0));
   inet_pton(AF_INET, address.c_str(), &target.sin_addr);
   const bool unreachable =
       connect(probe, reinterpret_cast<const sockaddr*>(&target), sizeof(target)) != 0 && errno == ENETUNREACH;

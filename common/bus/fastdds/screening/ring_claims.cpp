@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "common/bus/host/shm_names.hpp"
+
 namespace rtd::bus {
 namespace {
 
@@ -18,8 +20,8 @@ constexpr std::size_t kPrefix = 12, kGuid = 16;
 
 /// Where `wanted` begins in it, from `from` on; its size: nowhere.
 std::size_t find(Bytes bytes, Bytes wanted, std::size_t from = 0) {
-  const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), wanted.begin(),
-                                 wanted.end());
+  const auto found =
+      std::search(bytes.begin() + static_cast<std::ptrdiff_t>(from), bytes.end(), wanted.begin(), wanted.end());
   return static_cast<std::size_t>(found - bytes.begin());
 }
 
@@ -33,11 +35,11 @@ std::array<std::array<std::byte, 8>, 2> both_orders(std::uint64_t id) {
 
 /// As Fast DDS names it: "fast_datasharing_01.0f.7f.01.a7.19.36.14.20.00.00.00_0.0.1.3".
 std::string file_of(Bytes guid) {
-  std::string name = "fast_datasharing";
+  std::string name(kShmRing);
   for (std::size_t i = 0; i < kGuid; ++i) {
     char text[8];
-    const char separator = i == 0 || i == kPrefix ? '_' : '.';
-    std::snprintf(text, sizeof(text), i < kPrefix ? "%c%02x" : "%c%x", separator, std::to_integer<unsigned>(guid[i]));
+    if (i > 0) name += i == kPrefix ? '_' : '.';
+    std::snprintf(text, sizeof(text), i < kPrefix ? "%02x" : "%x", std::to_integer<unsigned>(guid[i]));
     name += text;
   }
   return name;

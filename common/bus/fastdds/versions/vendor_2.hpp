@@ -32,6 +32,7 @@
 
 #include "common/bus/fastdds/versions/discovery_events.hpp"
 #include "common/bus/fastdds/versions/type_functions.hpp"
+#include "common/bus/host/shm_names.hpp"
 
 /// Fast DDS 2, from 2.9 on.
 namespace rtd::bus::fastdds {
@@ -43,7 +44,7 @@ using DiscoveryProtocol = rtps::DiscoveryProtocol_t;
 using eprosima::fastrtps::c_TimeInfinite;
 using eprosima::fastrtps::Duration_t;
 
-inline constexpr char kShmPrefix[] = "fastrtps";
+inline constexpr std::string_view kShmPrefix = kShmNames[0];
 inline constexpr std::uint64_t kVersion =
     10'000 * FASTRTPS_VERSION_MAJOR + 100 * FASTRTPS_VERSION_MINOR + FASTRTPS_VERSION_MICRO;
 

@@ -29,6 +29,7 @@
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/fastdds/versions/discovery_events.hpp"
 #include "common/bus/fastdds/versions/type_functions.hpp"
+#include "common/bus/host/shm_names.hpp"
 
 /// Fast DDS 3.
 namespace rtd::bus::fastdds {
@@ -41,7 +42,7 @@ using dds::Duration_t;
 using PublicationData = rtps::PublicationBuiltinTopicData;
 using DiscoveryProtocol = rtps::DiscoveryProtocol;
 
-inline constexpr char kShmPrefix[] = "fastdds";
+inline constexpr std::string_view kShmPrefix = kShmNames[1];
 inline constexpr std::uint64_t kVersion =
     10'000 * FASTDDS_VERSION_MAJOR + 100 * FASTDDS_VERSION_MINOR + FASTDDS_VERSION_MICRO;
 
