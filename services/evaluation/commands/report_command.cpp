@@ -9,18 +9,6 @@
 #include "services/evaluation/core/report/report.hpp"
 
 namespace rtd::eval {
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Leaves the pages that exist, with their places as seen from `page`.
-void link_from(const fs::path& page, const fs::path& folder, decltype(Run::pages)& pages) {
-  std::erase_if(pages, [&](const auto& other) { return !fs::exists(folder / other.second); });
-  for (auto& [name, place] : pages)
-    place = fs::proximate(folder / place, fs::absolute(page).parent_path()).generic_string();
-}
-
-}  // namespace
 
 void add_report_command(CLI::App& parent, ReportOptions& options) {
   CLI::App* command =
@@ -55,7 +43,7 @@ int run_compare(const CompareOptions& options, std::ostream& out, std::ostream& 
       const bool labelled = runs.size() < options.labels.size();
       runs.push_back({labelled ? options.labels[runs.size()] : folder, load_run(folder)});
       choose_trajectory(runs.back().run, folder);
-      link_from(options.page, folder, runs.back().run.pages);
+      link_from(options.page, folder, runs.back().run);
     }
     write_file(options.page, comparison_html(runs));
     out << comparison_text(runs) << std::flush;

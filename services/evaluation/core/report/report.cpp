@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::size_t kJudgedWhenInterrupted = 50;
 constexpr std::size_t kDrawnLandmarks = 8000;
+constexpr char kReportPage[] = "report.html", kMapPage[] = "map.html", kDemoPage[] = "../demo.html";
 
 std::string existing(const std::string& path) {
   return std::filesystem::is_regular_file(path) ? path : std::string();
@@ -169,13 +170,19 @@ Run load_run(const std::string& folder) {
   run.groundtruth_path = existing(folder + "/groundtruth.txt");
   run.trajectory_path = existing(folder + "/trajectory.txt");
   run.static_map_path = existing(folder + "/static_map.ply");
-  run.pages = {{"Report", "report.html"}, {"Map in 3D", "map.html"}};
-  if (!existing(folder + "/../demo.html").empty()) run.pages.emplace_back("Both runs", "../demo.html");
+  run.pages = {{"Report", kReportPage}, {"Map in 3D", kMapPage}};
+  if (!existing(folder + '/' + kDemoPage).empty()) run.pages.emplace_back("Both runs", kDemoPage);
   if (const auto map = io::try_open(run.static_map_path))
     run.static_map_points = geometry::ply_vertices(*map).value_or(0);
   if (const auto landmarks = io::try_open(folder + "/map.ply"))
     run.landmarks_m = read_landmarks(*landmarks, kDrawnLandmarks);
   return run;
+}
+
+void link_from(const std::filesystem::path& page, const std::filesystem::path& folder, Run& run) {
+  std::erase_if(run.pages, [&](const auto& other) { return !std::filesystem::exists(folder / other.second); });
+  for (auto& [name, place] : run.pages)
+    place = std::filesystem::proximate(folder / place, std::filesystem::absolute(page).parent_path()).generic_string();
 }
 
 void judge_run(Run& run, const std::function<bool()>& go_on) {
@@ -221,7 +228,7 @@ std::string summary_text(const Run& run, const RunSummary& summary, const std::s
   for (const run_record::HostClock& clock : run.clocks) text += row("clock", clock_text(clock));
   text += row("CPU time", usage_text(run));
   for (const std::string& note : summary.notes) text += row("note", note);
-  text += row("report", folder + "/report.html, map.html");
+  text += row("report", fmt::format("{}/{}, {}", folder, kReportPage, kMapPage));
   return text;
 }
 
@@ -239,8 +246,8 @@ RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
   RunSummary summary = summarize_run(run);
   const std::string json = service::json_text(report_json(run, summary));
   write_file(folder / "report.json", json + "\n");
-  write_file(folder / "report.html", report_html(run, summary));
-  write_file(folder / "map.html", map_page::html(map_page_of(run, summary)));
+  write_file(folder / kReportPage, report_html(run, summary));
+  write_file(folder / kMapPage, map_page::html(map_page_of(run, summary)));
   return summary;
 }
 

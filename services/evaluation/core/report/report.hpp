@@ -28,6 +28,9 @@ map_page::Page map_page_of(const Run& run, const RunSummary& summary);
 /// Reads run.json and finds the other files of the run in `folder`. Throws RunFileError.
 Run load_run(const std::string& folder);
 
+/// Leaves the pages of the run in `folder` that exist, with their places as seen from `page`.
+void link_from(const std::filesystem::path& page, const std::filesystem::path& folder, Run& run);
+
 /// Compares the removed points with the true masks of the source and sets Run::removal. An interrupted run is judged on
 /// a few frames only: the user waits. `go_on` is asked before each frame. Masks that cannot be used become an event.
 void judge_run(Run& run, const std::function<bool()>& go_on);
