@@ -22,6 +22,7 @@ ACROSS_SERVICES = (
     ("services/maps/", "services/slam/map_file.hpp"),
 )
 MOST_ACROSS_SERVICES = 11
+MOST_BOTH_WAYS = 7
 
 
 def folder_of(path):
@@ -102,6 +103,19 @@ class Layers(unittest.TestCase):
 
     def test_included_files_exist(self):
         self.assertEqual([f"{source}: no {target}" for source, target in self.PAIRS if not (ROOT / target).exists()], [])
+
+    def test_few_sub_folders_include_each_other(self):
+        pairs = {(str(pathlib.PurePath(source).parent), str(pathlib.PurePath(target).parent))
+                 for source, target in self.PAIRS}
+        both_ways = sorted({tuple(sorted(pair)) for pair in pairs if pair[0] != pair[1] and pair[::-1] in pairs})
+        self.assertLessEqual(len(both_ways), MOST_BOTH_WAYS, both_ways)
+
+    def test_the_architecture_names_each_folder(self):
+        named = set(re.findall(r"[\w-]+", (ROOT / "docs/architecture.md").read_text(encoding="utf-8")))
+        folders = {part for top in ("common", "services") for suffix in ("cpp", "js", "cmake")
+                   for path in (ROOT / top).rglob(f"*.{suffix}") for part in path.relative_to(ROOT).parts[:-1]}
+        self.assertGreater(len(folders), 60)
+        self.assertEqual(sorted(folders - named), [])
 
     def test_a_circle_is_found(self):
         chain = [("common/a/x.cpp", "common/b/x.hpp"), ("common/b/y.hpp", "common/c/x.hpp")]
