@@ -196,7 +196,7 @@ class Docs(unittest.TestCase):
         version = re.search(r"^project\(\w+ VERSION ([\d.]+)", text_of("CMakeLists.txt"), re.MULTILINE).group(1)
         for package in ROS_PACKAGES:
             self.assertIn(f"<version>{version}</version>", text_of(package))
-        self.assertRegex(text_of("CHANGELOG.md"), rf"(?m)^## {re.escape(version)}$")
+        self.assertRegex(text_of("CHANGELOG.md"), rf"(?m)^## {re.escape(version)} - \d{{4}}-\d\d-\d\d$")
         copy = re.compile(rf"(?<![\d.]){re.escape(version)}(?!\.?\d)")
         self.assert_none([f"{path}: the version is written out; take it from CMake" for path in FILES
                           if path.suffix in (*SOURCE_SUFFIXES, ".txt", ".in", ".xml", ".yaml", ".json")
