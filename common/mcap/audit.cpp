@@ -71,7 +71,7 @@ Found first_of(std::initializer_list<Found> found) {
 Found check_place(const std::set<std::pair<std::uint64_t, std::uint64_t>>& seen, std::uint64_t offset,
                   std::uint64_t length, const std::string& kind) {
   if (seen.contains({offset, length})) return std::nullopt;
-  return "no " + kind + " of " + std::to_string(length) + " bytes stands at offset " + std::to_string(offset);
+  return "no " + kind + " of " + std::to_string(length) + " bytes is at offset " + std::to_string(offset);
 }
 
 }  // namespace
@@ -117,14 +117,14 @@ Found IndexAudit::check(std::uint64_t offset, std::uint64_t length, const Messag
     if (seen == messages_.end() || seen->offset != in_chunk || seen->log_time != log_time ||
         seen->channel_id != index.channel_id)
       return "no message of channel " + std::to_string(index.channel_id) + " and log_time " + std::to_string(log_time) +
-             " stands at " + std::to_string(in_chunk) + " in the chunk";
+             " is at " + std::to_string(in_chunk) + " in the chunk";
   }
   return differs("the number of messages of its channel", index.records.size(), counts_[index.channel_id]);
 }
 
 Found IndexAudit::check(const ChunkIndex& index) const {
   const auto seen = chunks_.find(index.chunk_start_offset);
-  if (seen == chunks_.end()) return "no chunk stands at offset " + std::to_string(index.chunk_start_offset);
+  if (seen == chunks_.end()) return "no chunk is at offset " + std::to_string(index.chunk_start_offset);
   const ChunkIndex& chunk = seen->second;
   if (chunk.compression != index.compression)
     return "the compression is \"" + chunk.compression + "\", the record says \"" + index.compression + '"';

@@ -111,7 +111,7 @@ std::optional<R> IndexedReader::record_at(std::uint64_t offset, std::uint64_t le
 
 std::optional<Attachment> IndexedReader::attachment(const AttachmentIndex& index) {
   std::optional<Attachment> attachment = record_at<Attachment>(index.offset, index.length);
-  const char* what = attachment ? nullptr : "AttachmentIndex: no attachment of this length stands there";
+  const char* what = attachment ? nullptr : "AttachmentIndex: no attachment of this length is there";
   if (attachment && options_.check_crcs && attachment->crc != 0) {
     // The CRC covers everything from the start of the content to the end of the data.
     const std::size_t covered = 32 + attachment->name.size() + attachment->media_type.size() + attachment->data.size();
@@ -128,7 +128,7 @@ std::optional<Metadata> IndexedReader::metadata(const MetadataIndex& index) {
   std::optional<Metadata> metadata = record_at<Metadata>(index.offset, index.length);
   if (!metadata)
     problems_.add_repeated({ProblemKind::kIndexMismatch, index.offset,
-                            "MetadataIndex: no metadata of this length stands there",
+                            "MetadataIndex: no metadata of this length is there",
                             "the metadata \"" + index.name + "\" is left out", true});
   return metadata;
 }

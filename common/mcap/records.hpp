@@ -110,7 +110,7 @@ struct ChunkIndex {
   std::uint64_t compressed_size = 0, uncompressed_size = 0;
 };
 
-/// The index of a chunk that stands at `offset`, without its message indexes. `length`: with opcode and length prefix.
+/// The index of a chunk at `offset`, without its message indexes. `length`: with opcode and length prefix.
 inline ChunkIndex index_of(const Chunk& chunk, std::uint64_t offset, std::uint64_t length) {
   ChunkIndex index;
   index.message_start_time = chunk.message_start_time;

@@ -53,7 +53,7 @@ bool StreamReader::check_loose_message(const Frame& frame, ByteView content, con
   const bool like_index = message.sequence + kIndexHead == content.size() && message.data.size() % 16 == 0;
   if (data_end_ != 0 || (chunked_ && like_index)) {
     report(ProblemKind::kMisplacedRecord, frame.offset,
-           data_end_ != 0 ? "Message: it stands behind the DataEnd" : "Message: it has the fields of a MessageIndex",
+           data_end_ != 0 ? "Message: it comes after the DataEnd" : "Message: it has the fields of a MessageIndex",
            "it is left out", true);
     return false;
   }

@@ -93,7 +93,7 @@ Check check_chunk(const SourceWindow& file, const ChunkIndex& index, std::uint64
   if (!file.peek(index.chunk_start_offset, head)) return mismatch(index, "the file cannot be read there");
   const bool is_chunk = static_cast<Opcode>(head[0]) == Opcode::kChunk &&
                         io::load<std::uint64_t>(head.data() + 1) == index.chunk_length - kFrameBytes;
-  if (!is_chunk) return mismatch(index, "no chunk of " + std::to_string(index.chunk_length) + " bytes stands there");
+  if (!is_chunk) return mismatch(index, "no chunk of " + std::to_string(index.chunk_length) + " bytes is there");
   const std::byte* const content = head.data() + kFrameBytes;
   const bool agrees = io::load<std::uint64_t>(content) == index.message_start_time &&
                       io::load<std::uint64_t>(content + 8) == index.message_end_time &&
