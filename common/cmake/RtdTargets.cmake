@@ -8,7 +8,7 @@
 #   rtd_executable(NAME SOURCES... PRIVATE libs...)
 #   rtd_test(NAME LABEL unit|component|interop|dataset SOURCES... LIBS... [TIMEOUT seconds] [SERIAL | PARALLEL | WAITS]
 #            [NIGHTLY filter])
-#     Tests labelled component and interop run alone unless PARALLEL, others beside each other (`ctest -j`) unless SERIAL.
+#     Tests labelled component and interop run alone unless PARALLEL, others in parallel (`ctest -j`) unless SERIAL.
 #     NIGHTLY: checks by their names in googletest. LABEL.NAME.nightly runs them, and `deploy/test.sh` only with --all.
 #     The targets rtd_unit_tests, rtd_component_tests and so on build all tests of a label.
 #   rtd_test_part(LABEL.NAME PART filter [RUN_SERIAL ON | RESOURCE_LOCK processes | RESOURCE_LOCK runs])
@@ -146,7 +146,7 @@ function(rtd_test name)
   # 77: tests/support/test_main.cpp. COST: what may take long starts first, so that no core waits for it at the end.
   set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL} SKIP_RETURN_CODE 77
                        TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT})
-  # What keeps time, or loads all cores: not beside other tests. Of the other tests with several processes, which mostly
+  # What keeps time, or loads all cores: not next to other tests. Of the other tests with several processes, which mostly
   # wait, one at a time, and one of those that are whole runs.
   if(ARG_WAITS)
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RESOURCE_LOCK processes)

@@ -10,7 +10,7 @@ _rtd() {
   word=${words[-1]}
   mapfile -t candidates < <("${words[0]}" complete "${words[@]:1}" 2>/dev/null)
   COMPREPLY=("${candidates[@]}")
-  # bash takes ':' and '=' for ends of words: what stands before the last one is not to be repeated.
+  # bash takes ':' and '=' for ends of words: what comes before the last one is not to be repeated.
   if [[ "$word" == *[:=]* ]]; then
     COMPREPLY=("${COMPREPLY[@]#"${word%"${word##*[:=]}"}"}")
   fi
