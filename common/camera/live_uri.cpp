@@ -32,7 +32,7 @@ std::vector<std::string> split_topics(const std::string& list) {
 }
 
 /// "camera_info" next to the image, as image_transport has it.
-std::string info_beside(std::string image) {
+std::string info_topic(std::string image) {
   for (const std::string transport : {"/compressed", "/compressedDepth"}) {
     if (image.ends_with(transport)) image.resize(image.size() - transport.size());
   }
@@ -56,8 +56,8 @@ LiveOptions parse_live_options(const std::string& text) {
   for (const std::string& topic : topics) complete = complete && topic.size() > 1;
   if (!complete) throw SourceError("source '" + io::abridged(text) + "' does not name its topics: " + kForm);
   LiveOptions options;
-  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_beside(topics[0]),
-                    info_beside(topics[1])};
+  options.topics = {topics[0], topics[1], topics.size() == 3 ? topics[2] : info_topic(topics[0]),
+                    info_topic(topics[1])};
   if (topics[0] == topics[1])
     throw SourceError("source '" + io::abridged(text) + "': colour and depth are one topic: " + kForm);
   for (const auto& [key, value] : uri.parameters) {

@@ -173,11 +173,11 @@ bool is_recording(const SourceUri& uri) {
 
 }  // namespace
 
-std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
+std::vector<RecordedTopic> auxiliary_topics(const std::string& text) {
   const SourceUri uri = parse_source_uri(text);
   if (!is_recording(uri)) return {};
   const std::unique_ptr<recordings::Reader> recording = open_file(uri);
-  std::vector<RecordedTopic> beside = recording->topics();
+  std::vector<RecordedTopic> auxiliary = recording->topics();
   std::vector<std::string> names = transform_topics(*recording);
   if (const std::string own = own_frames_topic(*recording); !own.empty()) {
     names.push_back(own);
@@ -185,8 +185,8 @@ std::vector<RecordedTopic> topics_beside_frames(const std::string& text) {
     const ImageTopics used = choose_topics(*recording, recording_options(uri).topics);
     names.insert(names.end(), {used.color, used.depth, used.info, used.depth_info});
   }
-  std::erase_if(beside, [&](const auto& topic) { return std::ranges::find(names, topic.name) != names.end(); });
-  return beside;
+  std::erase_if(auxiliary, [&](const auto& topic) { return std::ranges::find(names, topic.name) != names.end(); });
+  return auxiliary;
 }
 
 std::unique_ptr<recordings::Reader> recording_of(const std::string& text) {

@@ -24,7 +24,7 @@ SourceUri parse_source_uri(const std::string& text);
 
 /// The topics of a recording that its frames, their calibration and ground truth are not made of; none for other
 /// sources. Throws SourceError.
-std::vector<RecordedTopic> topics_beside_frames(const std::string& uri);
+std::vector<RecordedTopic> auxiliary_topics(const std::string& uri);
 
 /// The recording that a source plays; null for other sources. Throws SourceError.
 std::unique_ptr<recordings::Reader> recording_of(const std::string& uri);

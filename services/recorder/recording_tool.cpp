@@ -161,7 +161,7 @@ int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& 
     const auto source = camera::make_source(uri);
     const std::uint64_t frames = write(*source, options, err);
     print(options, frames, *source, out, err);
-    const std::vector<RecordedTopic> others = camera::topics_beside_frames(uri);
+    const std::vector<RecordedTopic> others = camera::auxiliary_topics(uri);
     for (const RecordedTopic& topic : others)
       err << "rtd convert: left out: " << topic.name << " (" << topic.type << ", " << topic.messages << " messages)\n";
     if (!others.empty())

@@ -176,7 +176,7 @@ TopicPair choose_images(const Reader& recording, const ImageTopics& named) {
 
 /// The calibration topic lies next to the image topic: /camera/rgb/image_color, /camera/rgb/camera_info; in bags of the
 /// RealSense SDK .../Color_0/image/data, .../Color_0/info/camera_info. Empty when there is none.
-std::string info_beside(const Topics& infos, std::string image) {
+std::string info_topic(const Topics& infos, std::string image) {
   if (const std::string profile = orbbec_profile_topic(image); contains(infos, profile)) return profile;
   for (std::size_t slash = image.rfind('/'); slash != std::string::npos; slash = image.rfind('/')) {
     image.resize(slash);
@@ -190,8 +190,8 @@ std::string info_beside(const Topics& infos, std::string image) {
 /// The one next to the image, else the only one.
 std::string choose_info(const Reader& recording, const std::string& color) {
   const Topics infos = fitting(recording, is_info);
-  const std::string beside = info_beside(infos, color);
-  return beside.empty() && infos.size() == 1 ? infos.front().name : beside;
+  const std::string own = info_topic(infos, color);
+  return own.empty() && infos.size() == 1 ? infos.front().name : own;
 }
 
 }  // namespace
@@ -245,7 +245,7 @@ ImageTopics choose_topics(const Reader& recording, const ImageTopics& named) {
   topics.depth = images.depth;
   topics.info =
       named.info.empty() ? choose_info(recording, topics.color) : check_named(recording, "info", named.info, is_info);
-  topics.depth_info = named.depth_info.empty() ? info_beside(fitting(recording, is_info), topics.depth)
+  topics.depth_info = named.depth_info.empty() ? info_topic(fitting(recording, is_info), topics.depth)
                                                : check_named(recording, "depth_info", named.depth_info, is_info);
   return topics;
 }

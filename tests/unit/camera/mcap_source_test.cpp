@@ -281,13 +281,13 @@ TEST(McapSource, names_the_topics_that_its_frames_are_not_made_of) {
   folder.three_frames();
   const auto frames = folder.path() / "frames.mcap";
   recordings::export_mcap(*make_source(folder.uri()), frames, mcap::Compression::kNone, 0);
-  EXPECT_THAT(topics_beside_frames("mcap:" + frames.string()), ::testing::IsEmpty());
+  EXPECT_THAT(auxiliary_topics("mcap:" + frames.string()), ::testing::IsEmpty());
   McapFile own;
   own.add_own(*test::own_frame(1'000'000'000, 100, 5000), 1);
   own.add("/imu", "sensor_msgs/msg/Imu", "cdr", {0, 1, 0, 0}, 1);
-  const std::vector<RecordedTopic> beside = topics_beside_frames(own.uri());
-  ASSERT_THAT(beside, SizeIs(1));
-  EXPECT_EQ(beside[0].name, "/imu");
+  const std::vector<RecordedTopic> auxiliary = auxiliary_topics(own.uri());
+  ASSERT_THAT(auxiliary, SizeIs(1));
+  EXPECT_EQ(auxiliary[0].name, "/imu");
 }
 
 TEST(PlainType, is_the_same_for_every_way_to_name_a_type) {
