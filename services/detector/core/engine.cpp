@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <opencv2/core.hpp>
+#include <opencv2/dnn.hpp>
 #include <utility>
 
 #include "common/msg/engine_names.hpp"
-#include "services/detector/core/opencv_engine.hpp"
+#include "services/detector/core/fast_sigmoid.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -28,6 +29,38 @@ EngineChoice onnxruntime_choice(const std::string& text) {
   return choice;
 }
 
+/// OpenCV's DNN module on the CPU; `device` names it for people.
+class OpencvEngine final : public Engine {
+ public:
+  OpencvEngine(const EngineModel& model, std::string device) : device_(std::move(device)) {
+    const FastSigmoidScope fast_sigmoid;
+    net_ = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(model.onnx.data()), model.onnx.size());
+    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    names_ = net_.getUnconnectedOutLayersNames();
+  }
+
+  const std::string& device() const override { return device_; }
+  std::size_t outputs() const override { return names_.size(); }
+  const std::vector<RawOutput>& infer(const cv::Mat& blob) override {
+    net_.setInput(blob);
+    net_.forward(mats_, names_);
+    tensors_.clear();
+    for (const cv::Mat& mat : mats_) {
+      const bool floats = mat.type() == CV_32F && mat.isContinuous();
+      tensors_.push_back(floats ? RawOutput{mat.ptr<float>(), {mat.size.p, mat.size.p + mat.dims}} : RawOutput{});
+    }
+    return tensors_;
+  }
+
+ private:
+  const std::string device_;
+  cv::dnn::Net net_;
+  std::vector<cv::String> names_;
+  std::vector<cv::Mat> mats_;
+  std::vector<RawOutput> tensors_;
+};
+
 /// ONNX Runtime where it works, else OpenCV with the cause in its name.
 std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const EngineModel& model) {
   std::string cause;
@@ -38,7 +71,7 @@ std::unique_ptr<Engine> make_best_engine(const std::string& onnxruntime, const E
       cause = error.what();
     }
   }
-  return make_opencv_engine(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause));
+  return std::make_unique<OpencvEngine>(model, kCpuDevice + (cause.empty() ? cause : ", because " + cause));
 }
 
 /// The images [first, first + count) of a blob.
@@ -133,7 +166,7 @@ std::unique_ptr<Engine> make_engine(const EngineChoice& choice, const EngineMode
     case Kind::kCpu:
       break;
   }
-  return make_opencv_engine(model, kCpuDevice);
+  return std::make_unique<OpencvEngine>(model, kCpuDevice);
 }
 
 std::unique_ptr<Engine> halve_when_full(std::unique_ptr<Engine> engine) {

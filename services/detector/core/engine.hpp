@@ -44,18 +44,10 @@ EngineChoice parse_engine(const std::string& text);
 /// The engine for tables: without the path of a library, "onnxruntime@cuda". Throws as parse_engine().
 std::string engine_label(const std::string& text);
 
-/// An output whose last layer need not be computed everywhere. Its planes come in groups; of a cell, the planes of a
-/// group are looked at only where the group's plane `gate_plane` reaches `least`.
-struct GatedOutput {
-  int planes = 0, group_planes = 1, gate_plane = 0;
-  float least = 0;
-};
-
 /// A network as an engine takes it.
 struct EngineModel {
   std::span<const std::uint8_t> onnx;
-  GatedOutput gated;  ///< outputs of exactly so many planes; 0: none
-  int threads = 1;    ///< of the CPU
+  int threads = 1;  ///< of the CPU
 };
 
 /// One output for all images: a tensor of floats, row-major, whose first dimension is the image.

@@ -77,11 +77,9 @@ void Network::load() {
                                  std::to_string(input_.height_px) + " px, of which both must be multiples of " +
                                  std::to_string(kSideMultiple));
   }
-  const int class_count = static_cast<int>(config_.class_names.size());
   EngineChoice engine = parse_engine(config_.engine);
   if (engine.kind == EngineChoice::Kind::kAuto) engine.library = config_.onnxruntime;
-  engine_ = make_engine(engine,
-                        {.onnx = bytes, .gated = yolov5_gate(class_count, config_.decode), .threads = config_.threads});
+  engine_ = make_engine(engine, {.onnx = bytes, .threads = config_.threads});
 }
 
 /// What is not configured comes from the file's metadata, else from the families' defaults.

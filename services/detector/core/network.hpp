@@ -22,7 +22,7 @@ class Network {
   explicit Network(DetectorConfig config);
 
   /// Runs the network on a blob (CV_32F, Nx3xHxW, pixels()); N > 1 needs free_batch(). The result is valid until the
-  /// next call. Planes that a gated output does not compute are undefined.
+  /// next call.
   const std::vector<RawOutput>& infer(const cv::Mat& blob);
   /// The boxes of an image of the last infer(), 0 to N - 1, whose scores pass. Not yet suppressed.
   std::vector<Candidate> candidates(int image) const;

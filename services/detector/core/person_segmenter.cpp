@@ -45,7 +45,7 @@ LoadedNetwork load(const MaskConfig& config) {
   if (engine.kind == EngineChoice::Kind::kAuto) engine.library = config.onnxruntime;
   const QuietOpenCv quiet;
   try {
-    const EngineModel model{.onnx = bytes, .gated = {}, .threads = config.threads};
+    const EngineModel model{.onnx = bytes, .threads = config.threads};
     return {make_engine(engine, model), *file.input};
   } catch (const cv::Exception& error) {
     name.refuse("is broken or not understood by OpenCV (" + std::string(error.err) + ")");

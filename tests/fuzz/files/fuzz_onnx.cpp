@@ -16,15 +16,14 @@ constexpr std::size_t kMaxPerByte = 400, kMaxAllocated = 1 << 20;
 
 std::vector<io::Bytes> seeds() {
   test::TinyNetwork small{.width_px = 32, .height_px = 32, .class_count = 1, .strides = {8}};
-  test::TinyNetwork free = small, named = small, pointwise = small;
+  test::TinyNetwork free = small, named = small;
   free.fixed_size = false;
   free.free_batch = true;
   free.reshape = {0, -1};
   free.reshape_by_node = true;
   named.metadata = {{"rtd.class_names", "person\nchair"}, {"rtd.heads", "8: 10,13 16,30 33,23"}};
-  pointwise.pointwise_heads = true;
   std::vector<io::Bytes> files;
-  for (const test::TinyNetwork& network : {small, free, named, pointwise})
+  for (const test::TinyNetwork& network : {small, free, named})
     files.push_back(rtd::testing::bytes_of(test::tiny_network_onnx(network)));
   return files;
 }

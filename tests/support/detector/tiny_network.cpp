@@ -102,7 +102,7 @@ std::string weights_of(Convolution convolution, const std::function<float(float)
          bytes_field(5, tensor("b" + convolution.name, {convolution.outputs}, convolution.biases));
 }
 
-std::vector<Convolution> head_convolutions(const TinyNetwork& network, int stride) {
+Convolution head_convolution(const TinyNetwork& network, int stride) {
   const int channels = 3 * (5 + network.class_count);
   std::vector<float> biases(static_cast<std::size_t>(channels), 0.0F);
   for (int anchor = 0; anchor < 3; ++anchor) {
@@ -110,10 +110,8 @@ std::vector<Convolution> head_convolutions(const TinyNetwork& network, int strid
     biases[first + 4] = -20.0F;
     biases[first + 5] = 20.0F;
   }
-  const std::string suffix = std::to_string(stride), output = "p" + suffix;
-  if (!network.pointwise_heads) return {{suffix, "images", output, 3, channels, stride, 40.0F, 4, biases}};
-  return {{"f" + suffix, "images", "features" + suffix, 3, 1, stride, 1.0F, 0, {0.0F}},
-          {suffix, "features" + suffix, output, 1, channels, 1, 40.0F, 4, biases}};
+  const std::string suffix = std::to_string(stride);
+  return {suffix, "images", "p" + suffix, 3, channels, stride, 40.0F, 4, biases};
 }
 
 }  // namespace
@@ -122,10 +120,9 @@ std::string tiny_network_onnx(const TinyNetwork& network) {
   const int channels = 3 * (5 + network.class_count), batch = network.free_batch ? 0 : 1;
   std::string nodes, initializers, outputs;
   for (const int stride : network.strides) {
-    for (const Convolution& convolution : head_convolutions(network, stride)) {
-      nodes += bytes_field(1, node_of(convolution));
-      initializers += weights_of(convolution, network.spoil);
-    }
+    const Convolution head = head_convolution(network, stride);
+    nodes += bytes_field(1, node_of(head));
+    initializers += weights_of(head, network.spoil);
     const std::vector<int> shape = {batch, channels, network.height_px / stride, network.width_px / stride};
     outputs += bytes_field(12, value_info("p" + std::to_string(stride), shape));
   }

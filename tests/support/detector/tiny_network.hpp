@@ -19,7 +19,6 @@ struct TinyNetwork {
   bool reshape_by_node = false;   ///< the shape is the output of a Constant node, not an initializer
   std::vector<int> strides = {8, 16, 32};
   std::map<std::string, std::string> metadata = {};
-  bool pointwise_heads = false;            ///< as in the real networks: features first, then a 1x1 convolution
   std::function<float(float)> spoil = {};  ///< what every weight and bias becomes; empty = itself
 };
 

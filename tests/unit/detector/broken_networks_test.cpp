@@ -19,7 +19,7 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-class BrokenNetwork : public ::testing::TestWithParam<bool> {
+class BrokenNetwork : public ::testing::Test {
  protected:
   void TearDown() override { std::filesystem::remove(path_); }
 
@@ -30,7 +30,7 @@ class BrokenNetwork : public ::testing::TestWithParam<bool> {
     std::replace(name.begin(), name.end(), '/', '_');
     path_ = std::filesystem::temp_directory_path() / name;
     std::ofstream(path_, std::ios::binary)
-        << test::tiny_network_onnx({.width_px = 640, .height_px = 480, .pointwise_heads = GetParam(), .spoil = spoil});
+        << test::tiny_network_onnx({.width_px = 640, .height_px = 480, .spoil = spoil});
     DetectorConfig config;
     config.model_path = path_.string();
     config.class_names = {"person", "box"};
@@ -56,19 +56,19 @@ class BrokenNetwork : public ::testing::TestWithParam<bool> {
   std::filesystem::path path_;
 };
 
-TEST_P(BrokenNetwork, of_nothing_but_nan_finds_nothing) {
+TEST_F(BrokenNetwork, of_nothing_but_nan_finds_nothing) {
   Detector network = detector([](float) { return kNan; });
   EXPECT_TRUE(network.detect(noise()).empty());
 }
 
-TEST_P(BrokenNetwork, that_sees_something_in_every_cell_gives_the_hundred_best) {
+TEST_F(BrokenNetwork, that_sees_something_in_every_cell_gives_the_hundred_best) {
   Detector network = detector([](float) { return 0.1F; });
   const std::vector<vision::Detection> found = network.detect(noise());
   EXPECT_EQ(found.size(), 100U);
   expect_sane(found);
 }
 
-TEST_P(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
+TEST_F(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
   for (const float size : {0.1F, 3.0F, 1e4F, 1e30F}) {
     std::mt19937 random(11);
     std::normal_distribution<float> normal(0, size);
@@ -77,16 +77,13 @@ TEST_P(BrokenNetwork, of_random_weights_gives_boxes_inside_the_image) {
   }
 }
 
-TEST_P(BrokenNetwork, with_some_weights_lost_gives_boxes_inside_the_image) {
+TEST_F(BrokenNetwork, with_some_weights_lost_gives_boxes_inside_the_image) {
   for (const float lost : {kNan, kInfinity, -kInfinity}) {
     std::mt19937 random(13);
     Detector network = detector([&](float weight) { return random() % 50 == 0 ? lost : weight + 0.02F; });
     expect_sane(network.detect(noise()));
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Heads, BrokenNetwork, ::testing::Bool(),
-                         [](const auto& variant) { return variant.param ? "pointwise" : "whole"; });
 
 }  // namespace
 }  // namespace rtd::detector

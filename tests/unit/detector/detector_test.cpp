@@ -69,29 +69,23 @@ TEST_F(DetectorTest, finds_the_white_cell) {
   expect_the_white_cell(Detector(config({})).detect(one_white_cell({64, 64}, 3, 5)));
 }
 
-TEST_F(DetectorTest, finds_it_with_heads_that_are_computed_only_where_something_is) {
-  expect_the_white_cell(Detector(config({.pointwise_heads = true})).detect(one_white_cell({64, 64}, 3, 5)));
-}
-
 TEST_F(DetectorTest, finds_in_a_batch_what_it_finds_in_each_image) {
-  for (const bool pointwise : {false, true}) {
-    Detector detector(config({.free_batch = true, .pointwise_heads = pointwise}));
-    const std::vector<cv::Mat> images = {one_white_cell({64, 64}, 3, 5), cv::Mat::zeros(64, 64, CV_8UC3),
-                                         one_white_cell({128, 128}, 4, 2), one_white_cell({64, 64}, 0, 7)};
-    const auto found = detector.detect_batch(images);
-    ASSERT_THAT(found, SizeIs(4));
-    for (std::size_t i = 0; i < images.size(); ++i) {
-      const std::vector<vision::Detection> alone = detector.detect(images[i]);
-      ASSERT_THAT(found[i], SizeIs(alone.size())) << i;
-      for (std::size_t k = 0; k < alone.size(); ++k) {
-        EXPECT_EQ(found[i][k].x_px, alone[k].x_px) << i;
-        EXPECT_EQ(found[i][k].score, alone[k].score) << i;
-      }
+  Detector detector(config({.free_batch = true}));
+  const std::vector<cv::Mat> images = {one_white_cell({64, 64}, 3, 5), cv::Mat::zeros(64, 64, CV_8UC3),
+                                       one_white_cell({128, 128}, 4, 2), one_white_cell({64, 64}, 0, 7)};
+  const auto found = detector.detect_batch(images);
+  ASSERT_THAT(found, SizeIs(4));
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const std::vector<vision::Detection> alone = detector.detect(images[i]);
+    ASSERT_THAT(found[i], SizeIs(alone.size())) << i;
+    for (std::size_t k = 0; k < alone.size(); ++k) {
+      EXPECT_EQ(found[i][k].x_px, alone[k].x_px) << i;
+      EXPECT_EQ(found[i][k].score, alone[k].score) << i;
     }
-    expect_the_white_cell(found[0]);
-    EXPECT_THAT(found[1], SizeIs(0));
-    EXPECT_THAT(detector.detect_batch({}), SizeIs(0));
   }
+  expect_the_white_cell(found[0]);
+  EXPECT_THAT(found[1], SizeIs(0));
+  EXPECT_THAT(detector.detect_batch({}), SizeIs(0));
 }
 
 TEST_F(DetectorTest, finds_the_same_in_batches_of_any_size_up_to_sixteen) {

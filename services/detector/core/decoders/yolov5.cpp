@@ -117,12 +117,9 @@ std::optional<int> yolov5_classes(const NetworkFacts& facts, const std::vector<R
 
 }  // namespace
 
-float objectness_gate(const DecodeConfig& config) {
-  return logit_of(std::max(config.objectness_threshold, config.confidence_threshold));
-}
-
 std::vector<Candidate> decode_heads(const std::vector<HeadLogits>& heads, int class_count, const DecodeConfig& config) {
-  const float min_logit = objectness_gate(config);
+  // The score is at most the objectness, so the confidence threshold gates the objectness too.
+  const float min_logit = logit_of(std::max(config.objectness_threshold, config.confidence_threshold));
   std::vector<Candidate> candidates;
   for (const HeadLogits& head : heads) {
     const std::size_t plane = static_cast<std::size_t>(head.rows) * static_cast<std::size_t>(head.cols);
@@ -150,14 +147,6 @@ std::vector<HeadLayout> yolov5_heads() {
   return {{8, {{{10, 13}, {16, 30}, {33, 23}}}},
           {16, {{{30, 61}, {62, 45}, {59, 119}}}},
           {32, {{{116, 90}, {156, 198}, {373, 326}}}}};
-}
-
-GatedOutput yolov5_gate(int class_count, const DecodeConfig& config) {
-  const int anchors = static_cast<int>(HeadLayout{}.anchors.size());
-  return {.planes = anchors * planes_per_anchor(class_count),
-          .group_planes = planes_per_anchor(class_count),
-          .gate_plane = kObjectnessPlane,
-          .least = objectness_gate(config)};
 }
 
 DecoderFamily yolov5_family() {

@@ -15,10 +15,6 @@ struct HeadLogits {
   HeadLayout layout;
 };
 
-/// The least objectness logit that decode_heads() looks at. The score is at most the objectness, so the confidence
-/// threshold gates the objectness too.
-float objectness_gate(const DecodeConfig& config);
-
 /// Decodes YOLOv5 heads (ultralytics v5, `Detect`): with s = sigmoid,
 ///   x = (2 s(tx) - 0.5 + column) stride,  w = (2 s(tw))^2 anchor_w,  score = s(objectness) max_c s(class_c).
 /// Only cells whose objectness logit passes are looked at, so an empty image costs one comparison a cell. Cells with a
@@ -27,9 +23,6 @@ std::vector<Candidate> decode_heads(const std::vector<HeadLogits>& heads, int cl
 
 /// The family: one output 1 x 3 (5 + classes) x rows x cols per stride, in any order; pixels RGB / 255.
 DecoderFamily yolov5_family();
-
-/// What of the outputs need not be computed everywhere: the planes of a cell's anchor below objectness_gate().
-GatedOutput yolov5_gate(int class_count, const DecodeConfig& config);
 
 /// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
 std::vector<HeadLayout> yolov5_heads();
