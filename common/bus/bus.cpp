@@ -3,7 +3,6 @@
 #include "common/bus/bus.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/bus/message_screen.hpp"
 

@@ -3,7 +3,6 @@
 #include "common/bus/discovery.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/bus/robot.hpp"
 #include "common/io/printable.hpp"

@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <set>
-#include <string>
 
 #include "common/bus/backend.hpp"
 #include "common/bus/network.hpp"

@@ -3,7 +3,6 @@
 #include "common/bus/raw_bus.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/bus/robot.hpp"
 #include "common/bus/topic_roles.hpp"

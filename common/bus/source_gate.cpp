@@ -3,7 +3,6 @@
 #include "common/bus/source_gate.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace rtd::bus {
 namespace {

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <map>
 #include <vector>
 
 #include "common/camera/calibration_forms.hpp"

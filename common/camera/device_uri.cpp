@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/source_factory.hpp"

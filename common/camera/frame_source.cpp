@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "common/msg/stamps.hpp"
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/depth_formats.hpp"

@@ -7,9 +7,7 @@
 #include <sstream>
 
 #include "common/camera/folder/folder_source.hpp"
-#include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
-#include "common/camera/recording/recording.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/camera/unread_forms.hpp"

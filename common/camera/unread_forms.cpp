@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <vector>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/folder_walk.hpp"

@@ -6,7 +6,6 @@
 
 #include <utility>
 
-#include "common/msg/imu.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/log.hpp"

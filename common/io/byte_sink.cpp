@@ -6,8 +6,6 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <cerrno>
-
 #include "common/io/fd_writing.hpp"
 
 namespace rtd::io {

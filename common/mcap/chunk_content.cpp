@@ -6,7 +6,6 @@
 
 #include "common/io/bytes.hpp"
 #include "common/mcap/codec.hpp"
-#include "common/mcap/compression.hpp"
 
 namespace rtd::mcap {
 

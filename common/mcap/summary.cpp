@@ -8,7 +8,6 @@
 #include "common/io/bytes.hpp"
 #include "common/io/unpacked.hpp"
 #include "common/mcap/codec.hpp"
-#include "common/mcap/framing.hpp"
 #include "common/mcap/stream_reader.hpp"
 
 namespace rtd::mcap {

@@ -3,7 +3,6 @@
 #include "common/occupancy/octomap_file.hpp"
 
 #include <istream>
-#include <string>
 
 #include "common/io/text.hpp"
 

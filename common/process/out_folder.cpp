@@ -9,8 +9,6 @@
 
 #include <array>
 #include <cerrno>
-#include <filesystem>
-#include <string>
 #include <system_error>
 
 #include "common/io/byte_sink.hpp"

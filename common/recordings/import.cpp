@@ -8,7 +8,6 @@
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/indexed_reader.hpp"
-#include "common/recordings/reader.hpp"
 
 namespace rtd::recordings {
 namespace fs = std::filesystem;

@@ -5,11 +5,9 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cerrno>
 #include <set>
-#include <string_view>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/byte_source.hpp"

@@ -8,7 +8,6 @@
 #include <array>
 #include <set>
 #include <string_view>
-#include <utility>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/recording_forms.hpp"

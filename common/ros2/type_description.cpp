@@ -12,7 +12,6 @@
 #include <set>
 #include <sstream>
 #include <string_view>
-#include <vector>
 
 #include "common/msg/commands.hpp"
 #include "common/msg/imu.hpp"

@@ -6,8 +6,6 @@
 #include <lz4frame.h>
 
 #include <algorithm>
-#include <memory>
-#include <string>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/recording_forms.hpp"

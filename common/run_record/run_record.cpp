@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
-#include <string_view>
 
 #include "common/camera/source_schemes.hpp"
 

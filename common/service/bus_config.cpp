@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <ranges>
@@ -22,7 +21,6 @@
 #include "common/io/printable.hpp"
 #include "common/msg/services.hpp"
 #include "common/security/keystore_layout.hpp"
-#include "common/service/model_locator.hpp"
 
 namespace rtd::service {
 namespace {

@@ -21,7 +21,6 @@
 
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
-#include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 
 namespace rtd::service {

@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"

@@ -15,7 +15,6 @@
 #include <cstdlib>
 #include <ctime>
 #include <mutex>
-#include <string_view>
 #include <utility>
 
 #include "common/io/printable.hpp"

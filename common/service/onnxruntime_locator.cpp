@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/onnxruntime_locator.hpp"
 
-#include <cstring>
 #include <system_error>
 
 namespace rtd::service {

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/bus/commands.hpp"
 #include "common/msg/parameters.hpp"

@@ -3,7 +3,6 @@
 #include "common/service/peer_table.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/bus/topic_roles.hpp"
 #include "common/service/metric_names.hpp"

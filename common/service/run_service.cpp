@@ -8,7 +8,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <condition_variable>
 #include <csignal>
 #include <cstdio>
@@ -16,10 +15,8 @@
 #include <iostream>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <utility>
 
-#include "common/bus/bus_factory.hpp"
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/port_check.hpp"

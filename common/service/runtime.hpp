@@ -12,7 +12,6 @@
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "common/bus/bus.hpp"
 #include "common/bus/bus_factory.hpp"

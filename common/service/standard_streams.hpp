@@ -6,7 +6,6 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <initializer_list>
 #include <iostream>
 #include <memory>
 

@@ -5,7 +5,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <optional>
 
 #include "common/vision/general_loss.hpp"
 #include "common/vision/pose_solver.hpp"

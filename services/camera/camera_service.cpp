@@ -14,7 +14,6 @@
 #include "common/camera/live_uri.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/camera_frame.hpp"
-#include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"

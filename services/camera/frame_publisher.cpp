@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <cstring>
 #include <random>
-#include <stdexcept>
-#include <utility>
 
 #include "common/camera/recording/ros_images.hpp"
 #include "common/camera/source_factory.hpp"

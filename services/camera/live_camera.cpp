@@ -9,11 +9,9 @@
 #include <chrono>
 #include <condition_variable>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "common/bus/host/host_checks.hpp"

@@ -8,11 +8,9 @@
 #include <limits>
 #include <stdexcept>
 #include <thread>
-#include <utility>
 
 #include "common/msg/engine_names.hpp"
 #include "common/service/camera_frame.hpp"
-#include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"

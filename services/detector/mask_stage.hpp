@@ -6,7 +6,6 @@
 #include <memory>
 #include <mutex>
 #include <opencv2/core.hpp>
-#include <string>
 #include <vector>
 
 #include "common/msg/ros.hpp"

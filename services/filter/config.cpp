@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/config.hpp"
 
-#include "common/msg/filter_modes.hpp"
 #include "common/service/mount.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/vision/motion_levels.hpp"

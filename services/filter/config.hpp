@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"

@@ -14,7 +14,6 @@
 #include "common/msg/stamps.hpp"
 #include "common/msg/word_list.hpp"
 #include "common/service/camera_frame.hpp"
-#include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/patience.hpp"

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/inboxes.hpp"
 
-#include <utility>
-
 namespace rtd::filter {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 
 #include "common/service/command_line.hpp"
-#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/recorder/copy_recording.hpp"
 
-#include <cerrno>
 #include <optional>
 #include <set>
 #include <tuple>

@@ -11,7 +11,6 @@
 #include "common/io/recording_forms.hpp"
 #include "common/mcap/records.hpp"
 #include "common/service/command_line.hpp"
-#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"

@@ -8,10 +8,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <limits>
-#include <set>
 
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/robot.hpp"
@@ -19,15 +17,12 @@
 #include "common/mcap/codec.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/ros2/names.hpp"
-#include "common/service/config.hpp"
 #include "common/service/json_text.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/pacer.hpp"
 #include "services/replay/core/topic_choice.hpp"
-#include "services/replay/input.hpp"
-#include "services/replay/replay_report.hpp"
 
 namespace rtd::replay {
 namespace {

@@ -5,11 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <ostream>
-#include <set>
 
 #include "common/io/recording_forms.hpp"
 #include "common/recordings/parts.hpp"

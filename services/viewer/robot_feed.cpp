@@ -8,7 +8,6 @@
 #include "common/msg/stamps.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/log.hpp"
-#include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
 
 namespace rtd::viewer {

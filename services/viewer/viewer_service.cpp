@@ -15,16 +15,13 @@
 #include <cstdlib>
 #include <iostream>
 #include <set>
-#include <string>
 #include <utility>
 
 #include "common/io/atomic_file.hpp"
-#include "common/service/config.hpp"
 #include "common/service/log.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/viewer/core/page_messages.hpp"
-#include "services/viewer/robot_feed.hpp"
 #include "services/viewer/settings.hpp"
 
 namespace rtd::viewer {

@@ -5,7 +5,6 @@
 #include <cstring>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/message_cdr.hpp"
 #include "common/msg/largest_sample.hpp"
 

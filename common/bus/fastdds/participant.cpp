@@ -6,9 +6,6 @@
 
 #include <atomic>
 #include <cstdlib>
-#include <mutex>
-#include <optional>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -20,7 +17,6 @@
 #include "common/bus/host/ring_folder.hpp"
 #include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
-#include "common/bus/ros_graph.hpp"
 
 #ifdef __SANITIZE_ADDRESS__
 /// Fast DDS 2.9 deletes its statistics through a base class without virtual destructor; everything else stays checked.

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/network.hpp"

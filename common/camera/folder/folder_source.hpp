@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/camera/calibration_request.hpp"
 #include "common/camera/folder/layouts.hpp"

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "common/camera/frame_source.hpp"
 #include "common/camera/recording/sdk_topics.hpp"
 
 namespace rtd::camera {

@@ -20,7 +20,6 @@
 #include "common/camera/recording/color_encodings.hpp"
 #include "common/camera/recording/rvl.hpp"
 #include "common/io/printable.hpp"
-#include "common/ros_codec/byte_cursor.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::camera {

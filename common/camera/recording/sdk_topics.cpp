@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/recording.hpp"
 #include "common/camera/settings_text.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "common/io/text.hpp"

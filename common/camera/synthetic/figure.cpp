@@ -7,8 +7,6 @@
 #include <cmath>
 
 #include "common/camera/synthetic/deterministic_math.hpp"
-#include "common/camera/synthetic/geometry.hpp"
-#include "common/camera/synthetic/texture.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
-#include <vector>
 
 #include "common/camera/frame_source.hpp"
 

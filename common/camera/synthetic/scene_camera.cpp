@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <opencv2/imgproc.hpp>
-#include <vector>
 
 #include "common/camera/synthetic/texture.hpp"
 #include "common/vision/image_codecs.hpp"

@@ -9,7 +9,6 @@
 #include <numeric>
 #include <sstream>
 #include <utility>
-#include <vector>
 
 #include "common/camera/synthetic/texture.hpp"
 #include "common/io/printable.hpp"

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 

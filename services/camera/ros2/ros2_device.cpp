@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "common/camera/calibration.hpp"
-#include "common/camera/recording/ros_images.hpp"
 #include "common/io/printable.hpp"
 #include "common/ros_codec/wire.hpp"
 

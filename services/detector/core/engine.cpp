@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <opencv2/core.hpp>
 #include <opencv2/dnn.hpp>
 #include <utility>
 

@@ -3,12 +3,9 @@
 #include "services/detector/core/onnx_file.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <optional>
 #include <set>
 #include <span>
 #include <sstream>
-#include <string>
 
 namespace rtd::detector {
 namespace {

@@ -3,7 +3,6 @@
 #include "services/detector/core/person_segmenter.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>

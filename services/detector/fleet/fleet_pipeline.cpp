@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/detector/fleet/fleet_pipeline.hpp"
 
-#include <chrono>
 #include <exception>
-#include <thread>
-#include <utility>
 
 #include "common/service/monotonic_clock.hpp"
 #include "common/vision/image_codecs.hpp"

@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <numbers>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
 #include "common/io/folder_walk.hpp"
 #include "common/io/input_file.hpp"

@@ -14,8 +14,6 @@
 #include <filesystem>
 #include <mutex>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
@@ -23,7 +21,6 @@
 #include "common/msg/services.hpp"
 #include "common/msg/word_list.hpp"
 #include "common/process/executable.hpp"
-#include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"

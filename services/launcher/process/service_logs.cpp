@@ -3,7 +3,6 @@
 #include "services/launcher/process/service_logs.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/io/printable.hpp"
 

@@ -8,8 +8,6 @@
 #include <algorithm>
 #include <sstream>
 
-#include "common/process/process_host.hpp"
-
 namespace rtd::launcher {
 
 void UsageRegistry::add_sample(const std::string& service, double peak_rss_mb, double cpu_s) {

@@ -3,7 +3,6 @@
 #include "services/launcher/run/collector.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <utility>
 
 #include "common/camera/frame_source.hpp"

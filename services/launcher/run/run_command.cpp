@@ -31,7 +31,6 @@
 #include "services/launcher/core/run/trace_file.hpp"
 #include "services/launcher/run/frame_verdict.hpp"
 #include "services/launcher/run/run_session.hpp"
-#include "services/launcher/run/run_setup.hpp"
 
 namespace rtd::launcher {
 namespace {

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/service/json_text.hpp"
-#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer {
 namespace {

@@ -3,7 +3,6 @@
 #include "services/viewer/core/outbox.hpp"
 
 #include <span>
-#include <utility>
 
 namespace rtd::viewer {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "common/msg/stamps.hpp"
 #include "common/vision/jpeg_size.hpp"
-#include "services/viewer/core/outbox.hpp"
 
 namespace rtd::viewer::page {
 namespace {

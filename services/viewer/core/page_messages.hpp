@@ -8,7 +8,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "common/msg/features.hpp"
 #include "common/msg/movers.hpp"

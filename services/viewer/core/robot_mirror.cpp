@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <numeric>
 
 #include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "services/viewer/core/outbox.hpp"
 #include "services/viewer/core/page_messages.hpp"
 
 namespace rtd::viewer {

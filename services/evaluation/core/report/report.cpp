@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "common/geometry/ply.hpp"
 #include "common/io/atomic_file.hpp"

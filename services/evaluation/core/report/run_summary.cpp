@@ -6,15 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/geometry/pose_list.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "common/run_record/run_record.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 
 namespace rtd::eval {

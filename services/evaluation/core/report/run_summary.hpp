@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>

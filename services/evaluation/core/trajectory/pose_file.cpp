@@ -10,11 +10,8 @@
 #include <filesystem>
 #include <functional>
 #include <sstream>
-#include <string>
-#include <vector>
 
 #include "common/geometry/pose_list.hpp"
-#include "common/geometry/trajectory.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/recording_forms.hpp"
 #include "common/io/text.hpp"

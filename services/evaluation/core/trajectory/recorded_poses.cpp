@@ -3,7 +3,6 @@
 #include "services/evaluation/core/trajectory/recorded_poses.hpp"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <map>
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/vision/samples.hpp"
-#include "services/filter/core/belief/surface_beliefs.hpp"
 
 namespace rtd::filter {
 namespace {

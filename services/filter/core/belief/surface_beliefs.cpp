@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/belief/surface_beliefs.hpp"
 
-#include <cmath>
 #include <utility>
 
 namespace rtd::filter {

@@ -3,10 +3,8 @@
 #include "services/filter/core/boxes/mover_tracks.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "common/msg/stamps.hpp"
 #include "common/vision/samples.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/stamps.hpp"
-#include "common/vision/features.hpp"
 #include "common/vision/reprojection.hpp"
 #include "common/vision/samples.hpp"
-#include "services/filter/core/motion/static_consensus.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "common/msg/features.hpp"
-#include "common/vision/pose_optimizer.hpp"
 #include "common/vision/samples.hpp"
 
 namespace rtd::filter {

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "common/geometry/se3.hpp"
-#include "common/msg/stamps.hpp"
 
 namespace rtd::filter {
 namespace {

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <utility>
 
 #include "common/vision/samples.hpp"
-#include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {
 namespace {

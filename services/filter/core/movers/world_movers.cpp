@@ -7,9 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
-#include "common/msg/stamps.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
 
 namespace rtd::filter {

@@ -3,7 +3,6 @@
 #include "services/filter/core/orb/brief.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "common/vision/lanes.hpp"
 #include "services/filter/core/orb/corners.hpp"

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <opencv2/core.hpp>
 
 #include "common/msg/features.hpp"

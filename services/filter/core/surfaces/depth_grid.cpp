@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <opencv2/imgproc.hpp>

@@ -9,7 +9,6 @@
 #include <iterator>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "common/io/text.hpp"
 #include "common/service/metric_names.hpp"
