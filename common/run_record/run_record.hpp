@@ -14,7 +14,7 @@
 
 #include "common/msg/features.hpp"
 #include "common/msg/tracking.hpp"
-#include "common/vision/person_masks.hpp"
+#include "common/vision/detection.hpp"
 
 namespace rtd::run_record {
 

@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rtd::service {
 
@@ -35,5 +37,16 @@ std::string state_folder(const EnvironmentReader& environment);
 
 /// The environment of this process.
 EnvironmentReader process_environment();
+
+/// Where the library of ONNX Runtime is looked for, in this order: where `deploy/setup.sh --onnxruntime` puts it next
+/// to this build, /usr/local/lib/rtd-slam, then the folders of the system's libraries.
+std::vector<std::filesystem::path> onnxruntime_folders();
+
+/// The path of ONNX Runtime's library: the value of RTD_ONNXRUNTIME as it is, else the first libonnxruntime.so or, of
+/// one with a version (libonnxruntime.so.1.21), the newest in the first folder that has any. Empty: there is none.
+std::string find_onnxruntime(const EnvironmentReader& environment, const std::vector<std::filesystem::path>& folders);
+
+/// The same with the environment of this process and onnxruntime_folders().
+std::string find_onnxruntime();
 
 }  // namespace rtd::service

@@ -16,7 +16,6 @@
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/service/onnxruntime_locator.hpp"
 #include "common/service/patience.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"

@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -10,13 +13,84 @@
 #include <string>
 
 #include "common/bus/raw_bus.hpp"
+#include "common/msg/ros.hpp"
 #include "common/service/exit_code.hpp"
+#include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
+#include "services/detector/core/fleet/duty.hpp"
 #include "services/detector/fleet/fleet_config.hpp"
 #include "services/detector/fleet/fleet_pipeline.hpp"
-#include "services/detector/fleet/robot_lane.hpp"
 
 namespace rtd::detector {
+
+/// One robot of several: its JPEG images in, its detections out, and its heartbeat of a service "detector", which says
+/// how it is served. While another detector serves the robot, it reads no images and sends no heartbeat (Duty).
+/// Thread-safe, but for update(), which belongs to one thread.
+class RobotLane {
+ public:
+  using OnImage = std::function<void(std::shared_ptr<const msg::CompressedImage>)>;
+  /// What the lane receives at each update().
+  struct Update {
+    bool camera_seen = false;   ///< a camera of this robot is in the domain
+    std::uint64_t dropped = 0;  ///< images that newer ones have replaced
+    std::string work;           ///< what computes the boxes and for how many robots, for people
+  };
+
+  /// `on_image` runs on a thread of the bus.
+  RobotLane(const bus::Bus& bus, std::string robot, std::chrono::milliseconds stuck_after, OnImage on_image);
+  ~RobotLane();
+  RobotLane(const RobotLane&) = delete;
+  RobotLane& operator=(const RobotLane&) = delete;
+
+  /// Takes over, stands by, opens or closes the reader of images, and reports. To be called often.
+  void update(const Update& latest);
+  /// The thread that computes the boxes continues.
+  void tick();
+  /// Publishes, if the lane still serves the robot.
+  void publish(const Answer& answer);
+  /// An image could not be used.
+  void count_broken(const std::string& cause);
+
+  bool serving() const { return started_ns_ != 0; }
+  /// Whether images may come: it serves a robot whose camera is there, or was until a moment ago.
+  bool reading() const { return reading_; }
+  /// Whether its camera was there and has left.
+  bool gone() const { return gone_; }
+  /// "anna", "standby for anna: gpubox (pid 42) serves it": for people.
+  std::string description() const;
+
+  static constexpr std::int64_t kGoneAfterNs = 5'000'000'000;  ///< without a camera for so long: images are not read
+
+ private:
+  void receive(const msg::ServiceStatus& status);
+  void take_over();
+  void step_down();
+  void follow_camera(bool seen, std::int64_t now_ns);
+  void report(const Update& latest, std::int64_t now_ns);
+  std::string name() const;
+
+  const std::string robot_;
+  const std::chrono::milliseconds stuck_after_;
+  const OnImage on_image_;
+  const std::shared_ptr<bus::Bus> bus_;
+  bus::Writer<msg::Detection2DArray> detections_;
+
+  mutable std::mutex duty_mutex_;
+  Duty duty_;
+  std::atomic<std::int64_t> started_ns_{0};  ///< of the own heartbeat; 0: does not serve
+  std::atomic<bool> reading_{false}, gone_{false};
+
+  std::mutex mutex_;                 ///< guards what follows
+  service::StopToken second_found_;  ///< the heartbeat's; Duty decides
+  std::unique_ptr<service::Heartbeat> heartbeat_;
+  AnswerStats stats_;
+  std::uint64_t answered_ = 0, broken_ = 0;
+  service::RateLimit broken_log_{std::chrono::seconds(1)};
+
+  bus::Reader<msg::CompressedImage> jpegs_;  ///< of update()
+  std::int64_t camera_seen_ns_ = 0;          ///< last time; 0: never
+  bus::Reader<msg::ServiceStatus> statuses_;
+};
 
 /// Finds the robots of a domain by their cameras, which announce JPEG images. Thread-safe.
 class RobotFinder {

@@ -14,7 +14,6 @@
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/onnxruntime_locator.hpp"
 #include "common/service/run_settings.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "services/detector/core/detector.hpp"

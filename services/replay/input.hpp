@@ -12,7 +12,6 @@
 #include <optional>
 #include <thread>
 
-#include "services/replay/core/key_commands.hpp"
 #include "services/replay/core/player.hpp"
 
 namespace rtd::replay {

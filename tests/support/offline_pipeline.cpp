@@ -12,7 +12,7 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/geometry/se3.hpp"
-#include "services/evaluation/core/trajectory/body_offset.hpp"
+#include "services/evaluation/core/trajectory/evaluation.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "tests/support/pose_error.hpp"
 

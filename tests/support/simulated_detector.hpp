@@ -12,7 +12,6 @@
 #include "common/camera/frame_source.hpp"
 #include "common/service/model_table.hpp"
 #include "common/vision/detection.hpp"
-#include "common/vision/person_masks.hpp"
 #include "services/detector/core/detector_config.hpp"
 
 namespace rtd::test_support {

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <string>
 
-#include "common/bus/cyclonedds/entity.hpp"
+#include "common/bus/cyclonedds/qos_mapping.hpp"
 #include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/cyclonedds/unmatched_participants.hpp"
 #include "common/bus/discovery.hpp"

@@ -7,7 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "common/camera/synthetic/faults.hpp"
 #include "common/camera/synthetic/sensor.hpp"
 
 namespace rtd::camera::synthetic {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/camera/synthetic/depth_faults.hpp"
-#include "common/camera/synthetic/faults.hpp"
 #include "common/camera/synthetic/renderer.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "common/camera/synthetic/sensor.hpp"

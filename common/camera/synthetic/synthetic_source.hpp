@@ -7,10 +7,10 @@
 
 #include "common/camera/frame_source.hpp"
 #include "common/camera/source_factory.hpp"
-#include "common/camera/synthetic/faults.hpp"
 #include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "common/camera/synthetic/scene_camera.hpp"
+#include "common/camera/synthetic/sensor.hpp"
 
 namespace rtd::camera {
 

@@ -10,7 +10,7 @@
 
 #include "common/ros_codec/wire.hpp"
 #include "common/service/log.hpp"
-#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/live/device_modes.hpp"
 #include "services/camera/realsense/realsense_bus.hpp"
 
 namespace rtd::camera {

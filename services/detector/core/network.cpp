@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "services/detector/core/decoders/yolov5.hpp"
-#include "services/detector/core/model_file.hpp"
+#include "services/detector/core/onnx_file.hpp"
 
 namespace rtd::detector {
 namespace {

@@ -7,7 +7,27 @@
 #include <span>
 #include <sstream>
 
+#include "common/io/byte_sink.hpp"
+#include "common/io/input_file.hpp"
+#include "services/detector/core/detector_config.hpp"
+
 namespace rtd::detector {
+
+void ModelName::refuse(const std::string& cause) const {
+  throw ModelError(kind + " '" + path + "': " + cause + "; run `deploy/setup.sh --models`, or name another file with " +
+                   key);
+}
+
+std::vector<std::uint8_t> read_model_file(const ModelName& model) {
+  try {
+    const std::string content = io::read_file(model.path, io::kNetwork);
+    if (content.empty()) model.refuse("is empty");
+    return {content.begin(), content.end()};
+  } catch (const io::IoError& error) {
+    model.refuse(error.what());
+  }
+}
+
 namespace {
 
 // Protobuf's wire format, without its library. Nothing here reads outside the bytes, whatever they hold.

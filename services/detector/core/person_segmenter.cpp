@@ -12,8 +12,8 @@
 
 #include "services/detector/core/decoders/decoder.hpp"
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/model_file.hpp"
 #include "services/detector/core/network_input.hpp"
+#include "services/detector/core/onnx_file.hpp"
 
 namespace rtd::detector {
 namespace {

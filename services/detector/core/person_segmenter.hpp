@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "common/vision/person_masks.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnx_file.hpp"
 

@@ -17,7 +17,7 @@
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -10,7 +10,6 @@
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/onnxruntime_locator.hpp"
 
 namespace rtd::eval {
 namespace {

@@ -24,7 +24,6 @@
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
 #include "common/service/model_table.hpp"
-#include "common/service/onnxruntime_locator.hpp"
 #include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
 

@@ -11,10 +11,22 @@
 #include <vector>
 
 #include "common/service/pacer.hpp"
-#include "services/replay/core/key_commands.hpp"
 #include "services/replay/core/message_feed.hpp"
 
 namespace rtd::replay {
+
+/// What a key press asks for.
+enum class Command { kTogglePause, kStep, kFaster, kSlower, kBack, kForward, kStop };
+
+/// Turns the bytes of a terminal into commands, also when an escape sequence arrives in pieces. Keys as in rosbag2:
+/// space, right arrow (or s), up, down; also b and f (10 s back, forward) and q.
+class KeyCommands {
+ public:
+  std::optional<Command> next(char byte);
+
+ private:
+  std::string pending_;  ///< an escape sequence so far
+};
 
 /// Maps recorded times to due times on the caller's clock. Every time is computed from one anchor, so errors do not
 /// add up.

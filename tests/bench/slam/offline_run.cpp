@@ -12,7 +12,7 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/msg/word_list.hpp"
 #include "common/service/config.hpp"
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/slam/config.hpp"
 #include "tests/support/offline_pipeline.hpp"

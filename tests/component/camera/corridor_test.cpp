@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/synthetic/corridor.hpp"
+#include "common/camera/synthetic/scene.hpp"
 
 #include <gmock/gmock.h>
 

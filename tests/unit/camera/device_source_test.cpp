@@ -6,7 +6,7 @@
 
 #include "common/camera/live_uri.hpp"
 #include "common/camera/source_factory.hpp"
-#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/live/device_modes.hpp"
 #include "tests/unit/camera/played_device.hpp"
 
 namespace rtd::camera {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/camera/synthetic/faults.hpp"
+#include "common/camera/synthetic/sensor.hpp"
 
 #include <gmock/gmock.h>
 

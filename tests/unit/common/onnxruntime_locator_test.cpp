@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/service/onnxruntime_locator.hpp"
+#include "common/service/model_locator.hpp"
 
 #include <gmock/gmock.h>
 

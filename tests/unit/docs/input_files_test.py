@@ -42,7 +42,7 @@ ALLOWED = {
     "common/process/posix_process_host.cpp": KERNEL + ", /dev/null",
     "common/rosbag2/db3_reader.cpp": "SQLite opens by name what was seen to be a regular file",
     "common/security/keystore_layout.cpp": "the user's own keystore; links to folders are not followed",
-    "common/service/onnxruntime_locator.cpp": "folders of installed libraries",
+    "common/service/model_locator.cpp": "folders of installed libraries and of models",
     "common/service/peer_health.cpp": KERNEL,
     "common/service/standard_streams.hpp": "/dev/null",
     "services/evaluation/core/datasets/openloris.cpp": "OpenCV reads a text in memory",

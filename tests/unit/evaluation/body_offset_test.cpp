@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/trajectory/body_offset.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,6 @@
 
 #include <cmath>
 
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
-
 namespace rtd::eval {
 namespace {
 

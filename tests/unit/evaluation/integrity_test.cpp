@@ -7,7 +7,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
 #include "tests/unit/evaluation/eval_paths.hpp"
 
 namespace rtd::eval {

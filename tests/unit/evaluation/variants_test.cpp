@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/experiment/variants.hpp"
+#include "services/evaluation/core/experiment/experiment.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/replay/core/key_commands.hpp"
+#include "services/replay/core/player.hpp"
 
 #include <gmock/gmock.h>
 

@@ -10,7 +10,7 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/camera/recording/ros_images.hpp"
-#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/live/device_modes.hpp"
 
 namespace rtd::camera {
 namespace {

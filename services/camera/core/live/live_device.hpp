@@ -15,7 +15,7 @@
 #include "common/camera/recording/frame_pairer.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/geometry/camera_model.hpp"
-#include "services/camera/core/live/pixel_format.hpp"
+#include "services/camera/core/live/device_modes.hpp"
 
 namespace rtd::camera {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "common/vision/person_masks.hpp"
 
 namespace rtd::eval {
 

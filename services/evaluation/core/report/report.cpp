@@ -14,7 +14,7 @@
 #include "common/io/text.hpp"
 #include "common/service/json_text.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 
 namespace rtd::eval {
 namespace {

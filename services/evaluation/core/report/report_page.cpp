@@ -9,7 +9,7 @@
 #include "common/vision/jpeg_size.hpp"
 #include "services/evaluation/core/report/report.hpp"
 #include "services/evaluation/core/report/trajectory_plot.hpp"
-#include "services/evaluation/core/trajectory/integrity_text.hpp"
+#include "services/evaluation/core/trajectory/integrity.hpp"
 #include "services/evaluation/page/page.hpp"
 
 namespace rtd::eval {

@@ -6,8 +6,10 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/se3.hpp"
@@ -123,5 +125,15 @@ struct SpanError : StepError {
 /// old, else since the oldest one; none without a pose, ground truth or an earlier pose.
 std::vector<std::optional<SpanError>> errors_over_span(const std::vector<PublishedPose>& published,
                                                        const Trajectory& groundtruth, double span_s);
+
+/// Keys: docs/evaluation.md. Metres, degrees, seconds; unknown values are null when printed.
+nlohmann::ordered_json to_json(const Drift& drift);
+nlohmann::ordered_json to_json(const Integrity& integrity);
+
+/// A figure for people: what it is of, and its value with unit.
+using NamedFigure = std::pair<std::string, std::string>;
+/// Drift in metres, degrees and their quotient, with what a nearly constant one means.
+std::vector<NamedFigure> drift_figures(const Drift& drift, const std::optional<double>& scene_depth_m);
+std::vector<NamedFigure> integrity_figures(const Integrity& integrity);
 
 }  // namespace rtd::eval

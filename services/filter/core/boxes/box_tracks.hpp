@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "common/vision/person_masks.hpp"
 #include "services/filter/core/boxes/kalman.hpp"
 #include "services/filter/core/config/filter_config.hpp"
 #include "services/filter/core/surfaces/cell_masks.hpp"

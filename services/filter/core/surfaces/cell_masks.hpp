@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "common/vision/person_masks.hpp"
 #include "services/filter/core/surfaces/depth_grid.hpp"
 
 namespace rtd::filter {

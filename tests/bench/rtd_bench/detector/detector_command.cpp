@@ -14,7 +14,6 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/onnxruntime_locator.hpp"
 #include "services/detector/core/engine.hpp"
 
 namespace rtd::bench {
