@@ -21,8 +21,7 @@ inline constexpr int kPeerParticipants = 32;
 /// Why a vendor may refuse to join a domain.
 inline constexpr char kMayBeRefused[] =
     "is the loopback interface up (ip link set lo up), are fewer than 60 participants in this domain, and does no "
-    "other "
-    "program hold its ports (ss -ulpn)? Above domain 101 Linux lends them to any program";
+    "other program hold its ports (ss -ulpn)? Above domain 101 Linux lends them to any program";
 
 /// An IPv4 address; port 0: the discovery ports of the domain's first kPeerParticipants participants.
 struct HostAddress {

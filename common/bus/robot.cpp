@@ -57,8 +57,7 @@ bool is_robot_name(std::string_view name) {
 void require_robot_name(const std::string& name) {
   if (name.empty() || is_robot_name(name)) return;
   throw BusError("'" + name +
-                 "' cannot be a robot's name: use letters, digits and single underscores, a letter first, "
-                 "at most " +
+                 "' cannot be a robot's name: use letters, digits and single underscores, a letter first, at most " +
                  std::to_string(kLongestRobotName) + " (--robot)");
 }
 

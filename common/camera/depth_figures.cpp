@@ -72,8 +72,7 @@ std::string DepthFigures::doubt(bool given) const {
   if (eighths && 10 * odd_eighths_ > eighths_)
     return fmt::format(
         "most depth lies between {:.2g} and {:.2g} m with {:.6g} units per metre, and its low three bits "
-        "are 0: no unit makes that right. SUN3D's depth, rotated by three bits, is read without "
-        "?depth_factor=",
+        "are 0: no unit makes that right. SUN3D's depth, rotated by three bits, is read without ?depth_factor=",
         low_m, high_m, 1 / scale_m_);
   const auto likely = std::ranges::find_if(kUnits, fits);
   const bool sure = high_m < kTooNear_m || low_m > kTooFar_m;

@@ -14,8 +14,7 @@ namespace rtd::camera {
 namespace {
 
 constexpr const char* kForm =
-    "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC]"
-    "[?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]";
+    "ros2:COLOR_TOPIC,DEPTH_TOPIC[,INFO_TOPIC][?calibration=FILE&depth_info=TOPIC&registered=1&tolerance_ms=20]";
 
 std::string absolute(std::string topic) {
   if (!topic.empty() && topic.front() != '/') topic.insert(topic.begin(), '/');

@@ -42,8 +42,7 @@ Eigen::Isometry3d parse_mount(const std::string& text, const std::string& key) {
     throw ConfigError(
         "slam.base.camera=" + io::abridged(text) +
         ": must be x,y,z,qx,qy,qz,qw: where the camera is in the base, m, and how its optical frame (x right, y down, "
-        "z "
-        "forward) is turned, a quaternion of length 1. A camera 0.4 m above the base that looks forward: "
+        "z forward) is turned, a quaternion of length 1. A camera 0.4 m above the base that looks forward: "
         "0,0,0.4,-0.5,0.5,-0.5,0.5");
   }
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

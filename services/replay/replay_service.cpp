@@ -80,8 +80,7 @@ void ReplayService::add_options(CLI::App& app, std::vector<service::GivenOption>
   app.footer(
       "Keys: space pauses, right arrow or s steps (paused), up and down arrow change the rate, b and f jump 10 s back "
       "and forward, q ends.\n'rtd replay --viewer' also shows it in the browser, waits for the first page and stays "
-      "until Ctrl-C "
-      "(--viewer=now, --viewer=exit, --set viewer.port=...).\nExit code: 0 "
+      "until Ctrl-C (--viewer=now, --viewer=exit, --set viewer.port=...).\nExit code: 0 "
       "done, 1 no answers (--lockstep), 2 the recording or an option cannot be "
       "used, 3 the recording is damaged and only its readable part was played");
 }

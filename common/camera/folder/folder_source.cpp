@@ -229,8 +229,7 @@ void FolderSource::calibrate(const FirstImages& first) {
   if (y_up_) {
     note(
         "fy is negative: the y axis of ICL-NUIM's camera points up. Images are the same, so the positive value is "
-        "taken; "
-        "true poses are mirrored into a camera whose y axis points down");
+        "taken; true poses are mirrored into a camera whose y axis points down");
   }
   if (first.color_px) fit(calibration.camera, *first.color_px);
   apply(calibration, info_);

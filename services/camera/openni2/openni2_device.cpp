@@ -203,10 +203,9 @@ DeviceError OpenNi2Device::refusal() const {
     const auto node = usb_node(uri);
     if (node && access(node->c_str(), R_OK | W_OK) != 0 && errno == EACCES)
       return {DeviceProblem::kNoPermission, no_permission("openni2:" + uri, *node)};
-    return {DeviceProblem::kBusy,
-            fmt::format("openni2:{} is plugged in but cannot be opened ({}): another program uses "
-                        "it; end it",
-                        uri, cause)};
+    return {
+        DeviceProblem::kBusy,
+        fmt::format("openni2:{} is plugged in but cannot be opened ({}): another program uses it; end it", uri, cause)};
   }
   if (!uri_.empty() && std::filesystem::exists(uri_))
     return {DeviceProblem::kUnsupportedMode,

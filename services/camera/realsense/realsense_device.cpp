@@ -230,9 +230,8 @@ std::optional<DeviceImage> RealsenseDevice::take(const Event& event) {
     const auto [known, first] = coming_.try_emplace(stream, mode);
     if (!first && (known->second.size_px != size_px || known->second.format != mode.format)) {
       throw DeviceError(DeviceProblem::kAbsent,
-                        fmt::format("{} changed the mode of its {} images to {} x {} {}; it is "
-                                    "started again",
-                                    name(), to_string(stream), size_px.width, size_px.height, mode.format));
+                        fmt::format("{} changed the mode of its {} images to {} x {} {}; it is started again", name(),
+                                    to_string(stream), size_px.width, size_px.height, mode.format));
     }
     return DeviceImage{stream, msg::to_ns(image.header.stamp), {.bytes = packed_rows(image)}};
   } catch (const ros::WireError& error) {

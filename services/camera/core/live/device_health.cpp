@@ -62,8 +62,7 @@ std::string DeviceHealth::lost_frames(std::int64_t now_ns) const {
   if (rate >= kRateShare * fps_) return {};
   return fmt::format(
       "only {:.1f} of {:g} frames/s arrive: use a USB 3 port of its own, a smaller mode (?width=&height=&fps=), or "
-      "more "
-      "light (automatic exposure lowers the rate)",
+      "more light (automatic exposure lowers the rate)",
       rate, fps_);
 }
 

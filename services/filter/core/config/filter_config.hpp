@@ -40,11 +40,9 @@ struct BoxTrackConfig {
   void bind(auto& binder) {
     noise.bind(binder);
     binder.field("min_overlap", min_overlap, {0.0, 1.0},
-                 "intersection over union of a track and a detection; less: "
-                 "not the same object");
+                 "intersection over union of a track and a detection; less: not the same object");
     binder.field("max_match_cost", max_match_cost, {0.1, 2.0},
-                 "1 - overlap, plus another class and another depth; more: not "
-                 "the same object");
+                 "1 - overlap, plus another class and another depth; more: not the same object");
     binder.field("confirm_hits", confirm_hits, {1, 100}, "a track seen less often ends with the first miss");
     binder.field("survive_misses_s", survive_misses_s, {0.0, 60.0}, "how long a confirmed track survives misses");
     binder.field("silence_s", silence_s, {0.0, 60.0}, "how long a track is carried without any detections");
@@ -68,8 +66,7 @@ struct MoverTrackConfig {
     binder.field("confirm_s", confirm_s, {0.0, 10.0}, "... nor is one first seen moving less long ago");
     binder.field("acceleration_m_s2", acceleration_m_s2, {0.01, 100.0}, "of a mover without a class");
     binder.field("expect_after_s", expect_after_s, {0.0, 60.0},
-                 "unseen for this long, it is masked where its track expects "
-                 "it; before that memory does so");
+                 "unseen for this long, it is masked where its track expects it; before that memory does so");
     binder.field("rest_s", rest_s, {0.0, 60.0}, "seen at rest for this long, it has become part of the world");
     binder.field("gone_s", gone_s, {0.0, 60.0}, "its place seen without it for this long, it has gone");
     binder.field("max_unseen_s", max_unseen_s, {0.0, 60.0}, "not seen moving for longer, it may be anywhere");
@@ -175,8 +172,7 @@ struct MaskConfig {
 
   void bind(auto& binder) {
     binder.field("min_share", min_share, {0.01, 1.0},
-                 "the object is the nearest cluster with this share of the "
-                 "measured cells of its box");
+                 "the object is the nearest cluster with this share of the measured cells of its box");
     binder.field("max_object_depth_m", max_object_depth_m, {0.05, 5.0},
                  "cells farther from the object's median depth do not belong to it");
     binder.field("min_contained", min_contained, {0.0, 1.0},
@@ -212,20 +208,17 @@ struct BeliefConfig {
 
   void bind(auto& binder) {
     binder.field("background_prior", background_prior, {0.0, 1.0},
-                 "static probability of a new surface: no class, a low level, "
-                 "or a picture on a wall");
+                 "static probability of a new surface: no class, a low level, or a picture on a wall");
     binder.field("medium_prior", medium_prior, {0.0, 1.0}, "the same on an object of a medium level");
     binder.field("high_prior", high_prior, {0.0, 1.0}, "the same on an object of a high level");
     binder.field("gain_per_s", gain_per_s, {0.0, 1000.0}, "log-odds for each second at rest");
     binder.field("high_gain_per_s", high_gain_per_s, {0.0, 1000.0}, "the same for a high level");
     binder.field("highest_probability", highest_probability, {0.5, 1.0},
-                 "evidence adds up to this and no further, so that it can be "
-                 "outweighed");
+                 "evidence adds up to this and no further, so that it can be outweighed");
     binder.field("high_limit", high_limit, {0.0, 1.0}, "the same for a high level");
     binder.field("lowest_probability", lowest_probability, {0.0, 0.5}, "what moves falls to this at once");
     binder.field("forget_s", forget_s, {0.01, 1000.0},
-                 "time constant with which a belief returns to the prior "
-                 "without a statement");
+                 "time constant with which a belief returns to the prior without a statement");
     binder.field("min_moving_cells", min_moving_cells, {0.01, 1.0}, "share of its cells dynamic: the object moves");
     binder.field("min_moving_votes", min_moving_votes, {1, 2048}, "or this many of its features displaced");
     binder.field("min_moving_votes_share", min_moving_votes_share, {0.01, 1.0}, "... and this share of them");
@@ -237,8 +230,7 @@ struct BeliefConfig {
     binder.field("min_resting_votes", min_resting_votes, {0, 2048}, "... this many features at their place");
     binder.field("min_resting_ratio", min_resting_ratio, {1.0, 1000.0}, "... this many times more than displaced ones");
     binder.field("min_used_probability", min_used_probability, {0.0, 1.0},
-                 "surfaces at least this probably static take part in the "
-                 "quick pose, whatever their class");
+                 "surfaces at least this probably static take part in the quick pose, whatever their class");
   }
 };
 
@@ -285,8 +277,7 @@ struct PaperConfig {
   void bind(auto& binder) {
     binder.field("tau_m", tau_m, {0.01, 2.0}, "mode rtd-paper: depth difference of a mover");
     binder.field("max_view_angle_deg", max_view_angle_deg, {1.0, 90.0},
-                 "mode rtd-paper: no statement at a larger angle between the "
-                 "two viewing rays");
+                 "mode rtd-paper: no statement at a larger angle between the two viewing rays");
     binder.field("max_baseline_m", max_baseline_m, {0.01, 10.0},
                  "mode rtd-paper: keyframes from farther away do not overlap");
     binder.field("keyframes", keyframes, {1, 16}, "mode rtd-paper: overlapping keyframes used per frame");

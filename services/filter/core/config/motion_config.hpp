@@ -79,21 +79,17 @@ struct GeometryConfig {
     binder.field("tau_floor_m", tau_floor_m, {0.01, 2.0}, "smallest significant depth difference (the paper: 0.4 m)");
     binder.field("tau_sigmas", tau_sigmas, {1.0, 50.0}, "plus this many standard deviations of the difference");
     binder.field("max_view_angle_deg", max_view_angle_deg, {1.0, 90.0},
-                 "no statement at a larger angle between the two viewing rays "
-                 "(paper section III-A)");
+                 "no statement at a larger angle between the two viewing rays (paper section III-A)");
     binder.field("max_baseline_m", max_baseline_m, {0.01, 10.0},
-                 "keyframes from farther away saw the other side of things and "
-                 "are not used");
+                 "keyframes from farther away saw the other side of things and are not used");
     binder.field("max_views", max_views, {1, 30}, "reference views per frame");
     binder.field("min_cluster_statements", min_cluster_statements, {1, 10000},
                  "cells with a statement before a cluster is judged");
     binder.field("min_violated_share", min_violated_share, {0.01, 1.0}, "of them violated: the cluster is dynamic");
     binder.field("max_unsettled_share", max_unsettled_share, {0.0, 1.0},
-                 "if recent views see through a larger share of a surface, it "
-                 "has not come to rest");
+                 "if recent views see through a larger share of a surface, it has not come to rest");
     binder.field("min_region_cells", min_region_cells, {1, 10000},
-                 "smaller moving regions are noise: depth cameras see thin "
-                 "structures now and then");
+                 "smaller moving regions are noise: depth cameras see thin structures now and then");
     binder.field("min_resting_cells", min_resting_cells, {1, 100000},
                  "a part of a moving surface may rest from this size on");
     binder.field("min_resting_ratio", min_resting_ratio, {1.0, 1000.0},
@@ -105,8 +101,7 @@ struct GeometryConfig {
     binder.field("min_creeping_share", min_creeping_share, {0.05, 1.0},
                  "of its features displaced over a second: it moves");
     binder.field("max_static_chi2", max_static_chi2, {0.1, 100.0},
-                 "squared normalised displacement up to which a feature is at "
-                 "its place");
+                 "squared normalised displacement up to which a feature is at its place");
     binder.field("min_moving_chi2", min_moving_chi2, {0.1, 1000.0}, "... and from which it has moved");
     binder.field("memory_s", memory_s, {0.0, 2.55},
                  "for how long a dynamic surface is remembered after the last evidence");

@@ -24,8 +24,7 @@ std::optional<ViewerUse> parse_viewer_use(const std::string& words) {
 std::string viewer_use_problem(const std::string& words) {
   return "--viewer=" + words +
          ": write --viewer (a recording waits for the first page, the page stays until Ctrl-C), --viewer=now (no "
-         "wait), "
-         "--viewer=exit (the page ends with the run) or --viewer=now,exit";
+         "wait), --viewer=exit (the page ends with the run) or --viewer=now,exit";
 }
 
 }  // namespace rtd::launcher
