@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
 #include <vector>
 
 #include "common/camera/calibration_forms.hpp"
@@ -268,6 +270,61 @@ std::string to_yaml(const Calibration& calibration) {
   if (calibration.readout_s != 0) text += fmt::format("readout_s: {:.9g}\n", calibration.readout_s);
   if (calibration.depth_offset_s != 0) text += fmt::format("depth_offset_s: {:.9g}\n", calibration.depth_offset_s);
   return text;
+}
+
+namespace {
+
+double parse_in(const std::string& uri, const std::string& key, const std::string& value, double least, double most) {
+  const std::optional<double> number = io::parse_number(value);
+  if (number && *number >= least && *number <= most) return *number;
+  throw SourceError(fmt::format("source '{}': {} is '{}', allowed: {:g} to {:g}", io::abridged(uri), key,
+                                io::abridged(value), least, most));
+}
+
+std::map<std::string, double> parse_intrinsics(const std::string& uri, const std::string& value) {
+  constexpr std::array kKeys = {"fx", "fy", "cx", "cy", "width", "height"};
+  std::vector<double> numbers;
+  if (const auto lines = io::split_lines(value, ", \t"); !lines.empty()) {
+    for (const std::string& field : lines.front().fields) {
+      const std::optional<double> number = io::parse_number(field);
+      if (number && std::isfinite(*number)) numbers.push_back(*number);
+    }
+    if (numbers.size() != lines.front().fields.size()) numbers.clear();
+  }
+  if (numbers.size() != 4 && numbers.size() != kKeys.size()) {
+    throw SourceError("source '" + io::abridged(uri) + "': intrinsics is '" + io::abridged(value) +
+                      "'; write fx,fy,cx,cy or fx,fy,cx,cy,width,height in px");
+  }
+  std::map<std::string, double> intrinsics;
+  for (std::size_t i = 0; i < numbers.size(); ++i) intrinsics[kKeys[i]] = numbers[i];
+  return intrinsics;
+}
+
+}  // namespace
+
+bool take_calibration_parameter(CalibrationRequest& request, const std::string& uri, const std::string& key,
+                                const std::string& value) {
+  if (key == "calibration") {
+    request.file = value;
+  } else if (key == "intrinsics") {
+    request.intrinsics = parse_intrinsics(uri, value);
+  } else if (key == "depth_factor") {
+    request.depth_factor = parse_in(uri, key, value, 1, 1e6);
+  } else if (key == "fps") {
+    request.fps = parse_in(uri, key, value, 0.1, 1000);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+Calibration requested_calibration(const CalibrationRequest& request, const std::filesystem::path& folder,
+                                  std::optional<cv::Size> image_px) {
+  if (!request.intrinsics.empty()) return make_calibration(request.intrinsics, "?intrinsics=", image_px);
+  std::filesystem::path file = request.file;
+  std::error_code error;
+  if (!std::filesystem::exists(file, error) && std::filesystem::exists(folder / file, error)) file = folder / file;
+  return read_calibration(file, image_px);
 }
 
 }  // namespace rtd::camera

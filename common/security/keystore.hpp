@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "common/security/keystore_layout.hpp"
+#include "common/security/enclave.hpp"
 #include "common/security/permissions.hpp"
 
 namespace rtd::security {

@@ -20,7 +20,7 @@
 #include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/services.hpp"
-#include "common/security/keystore_layout.hpp"
+#include "common/security/enclave.hpp"
 
 namespace rtd::service {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "common/msg/engine_names.hpp"
 #include "common/msg/filter_modes.hpp"
-#include "common/service/model_table.hpp"
+#include "common/service/model_locator.hpp"
 
 /// The settings of services that are options of `rtd run`, too: the service and the launcher bind them by this, so key,
 /// range, default, help and option are declared once.

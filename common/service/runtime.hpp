@@ -18,7 +18,6 @@
 #include "common/service/log.hpp"
 #include "common/service/pacer.hpp"
 #include "common/service/peer_clocks.hpp"
-#include "common/service/peer_health.hpp"
 #include "common/service/peer_table.hpp"
 #include "common/service/silent_inputs.hpp"
 #include "common/service/stop_token.hpp"

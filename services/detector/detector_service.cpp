@@ -14,7 +14,6 @@
 #include "common/service/load_step.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/patience.hpp"
 #include "common/vision/image_codecs.hpp"

@@ -22,7 +22,7 @@
 #include "common/service/run_settings.hpp"
 #include "common/service/runtime.hpp"
 #include "common/vision/detection.hpp"
-#include "services/detector/core/engine_guard.hpp"
+#include "services/detector/core/detector.hpp"
 #include "services/detector/image_input.hpp"
 #include "services/detector/mask_stage.hpp"
 

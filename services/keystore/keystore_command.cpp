@@ -16,7 +16,6 @@
 #include "common/bus/topics.hpp"
 #include "common/security/enclave.hpp"
 #include "common/security/keystore.hpp"
-#include "common/security/keystore_layout.hpp"
 #include "common/service/command_line.hpp"
 
 namespace rtd::keystore {

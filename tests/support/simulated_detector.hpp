@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
-#include "common/service/model_table.hpp"
+#include "common/service/model_locator.hpp"
 #include "common/vision/detection.hpp"
 #include "services/detector/core/detector_config.hpp"
 

@@ -13,7 +13,7 @@
 #include "common/bus/library_log.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/port_check.hpp"
-#include "common/security/keystore_layout.hpp"
+#include "common/security/enclave.hpp"
 
 namespace rtd::bus::cyclonedds {
 namespace {

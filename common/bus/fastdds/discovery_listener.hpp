@@ -4,16 +4,40 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 
+#include "common/bus/bus_factory.hpp"
 #include "common/bus/discovery.hpp"
-#include "common/bus/fastdds/participant_security.hpp"
 #include "common/bus/fastdds/versions/vendor.hpp"
 
 namespace rtd::bus::fastdds {
+
+/// The enclave's files as Fast DDS's built-in plugins want them. No change without security.
+void map_security(const SecurityOptions& security, dds::DomainParticipantQos& qos);
+
+/// Leaves the shared memory that this process uses to its user. Fast DDS lets every user of the host read it, and the
+/// raw frames that go through it to readers without our rings are not encrypted.
+void hide_shared_memory();
+
+/// Calls BusOptions::on_problem, once each, for participants that a secured one cannot match. Thread-safe.
+class SecurityWatch {
+ public:
+  explicit SecurityWatch(const BusOptions& options);
+  void discovered(const FoundParticipant& participant);
+  void refused(const ParticipantId& participant);
+
+ private:
+  const std::uint32_t domain_;
+  const std::function<void(const std::string&)> on_problem_;
+  std::mutex mutex_;
+  std::map<ParticipantId, std::string> names_;  ///< of those not reported yet; else empty
+};
 
 /// Announces our participant again to others that have just appeared. Fast DDS 2.9 answers a new participant's first
 /// announcement once, but it announces itself some milliseconds before it can receive: an answer that comes too early

@@ -19,7 +19,7 @@
 #include "common/bus/fastdds/codec.hpp"
 #include "common/bus/fastdds/discovery_listener.hpp"
 #include "common/bus/host/host_checks.hpp"
-#include "common/bus/host/shm_folder.hpp"
+#include "common/bus/host/ring_folder.hpp"
 #include "common/bus/ros_graph.hpp"
 
 namespace rtd::bus::fastdds {

@@ -9,8 +9,6 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "common/bus/host/shm_folder.hpp"
-
 namespace rtd::bus {
 namespace {
 

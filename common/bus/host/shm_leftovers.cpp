@@ -23,7 +23,6 @@
 #include <utility>
 
 #include "common/bus/host/ring_folder.hpp"
-#include "common/bus/host/shm_folder.hpp"
 #include "common/bus/host/shm_names.hpp"
 
 namespace rtd::bus {

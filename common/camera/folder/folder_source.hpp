@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "common/camera/calibration_request.hpp"
+#include "common/camera/calibration.hpp"
 #include "common/camera/folder/layouts.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/image_files.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/calibration_request.hpp"
+#include "common/camera/calibration.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/recordings/reader.hpp"
 

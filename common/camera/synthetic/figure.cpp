@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "common/camera/synthetic/deterministic_math.hpp"
+#include "common/camera/synthetic/geometry.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/synthetic/geometry.hpp"
 
-#include "common/camera/synthetic/deterministic_math.hpp"
-
 namespace rtd::camera::synthetic {
 
 int Geometry::add_object(std::string class_name) {

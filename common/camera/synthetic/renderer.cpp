@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "common/camera/synthetic/deterministic_math.hpp"
+#include "common/camera/synthetic/geometry.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

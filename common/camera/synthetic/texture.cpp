@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/camera/synthetic/deterministic_math.hpp"
+#include "common/camera/synthetic/geometry.hpp"
 
 namespace rtd::camera::synthetic {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/camera/device_uri.hpp"
+#include "common/camera/live_uri.hpp"
 #include "services/camera/core/live/live_device.hpp"
 
 namespace rtd::camera {

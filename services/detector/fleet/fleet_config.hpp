@@ -12,7 +12,7 @@
 
 #include "common/service/runtime.hpp"
 #include "common/vision/detection.hpp"
-#include "services/detector/core/engine_guard.hpp"
+#include "services/detector/core/detector.hpp"
 #include "services/detector/core/fleet/fleet_queue.hpp"
 
 namespace rtd::detector {

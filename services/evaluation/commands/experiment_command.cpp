@@ -15,7 +15,7 @@
 #include "common/process/out_folder.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/json_text.hpp"
-#include "common/service/model_table.hpp"
+#include "common/service/model_locator.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/evaluation/commands/experiment_plan.hpp"
 #include "services/evaluation/commands/guarded.hpp"

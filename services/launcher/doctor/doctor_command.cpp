@@ -23,7 +23,6 @@
 #include "common/process/executable.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 #include "services/camera/realsense/realsense_device.hpp"
 #include "services/detector/core/engine.hpp"
 

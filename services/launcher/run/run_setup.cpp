@@ -18,7 +18,6 @@
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 #include "common/service/pacer.hpp"
 
 namespace rtd::launcher {

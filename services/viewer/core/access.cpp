@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "services/viewer/core/session.hpp"
-
 namespace rtd::viewer {
 namespace {
 

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "services/viewer/core/access.hpp"
 #include "services/viewer/core/command_forms.hpp"
 #include "services/viewer/core/foxglove.hpp"
-#include "services/viewer/core/session.hpp"
 
 namespace rtd::viewer {
 

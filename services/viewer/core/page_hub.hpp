@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "services/viewer/core/access.hpp"
 #include "services/viewer/core/robot_mirror.hpp"
-#include "services/viewer/core/session.hpp"
 
 namespace rtd::viewer {
 

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "services/viewer/core/access.hpp"
-#include "services/viewer/core/session.hpp"
 #include "services/viewer/web/site.hpp"
 
 namespace rtd::viewer {

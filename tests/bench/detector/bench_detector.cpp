@@ -10,9 +10,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/network.hpp"
 #include "services/detector/core/network_input.hpp"
 #include "services/detector/core/person_segmenter.hpp"
 #include "tests/support/detector/mask_network.hpp"

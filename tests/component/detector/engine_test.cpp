@@ -16,8 +16,7 @@
 
 #include "common/msg/engine_names.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/engine_guard.hpp"
-#include "services/detector/core/network.hpp"
+#include "services/detector/core/detector.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 
 namespace rtd::detector {

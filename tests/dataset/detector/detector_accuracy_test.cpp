@@ -15,7 +15,6 @@
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
-#include "services/detector/core/engine_guard.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 
 #include "common/service/model_locator.hpp"
-#include "common/service/model_table.hpp"
 
 namespace rtd::test {
 namespace fs = std::filesystem;

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/calibration_request.hpp"
+#include "common/camera/calibration.hpp"
 #include "common/camera/frame_source.hpp"
 
 namespace rtd::camera {

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "common/service/config.hpp"
-#include "common/service/model_table.hpp"
 
 namespace rtd::service {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/network.hpp"
+#include "services/detector/core/detector.hpp"
 
 #include <gmock/gmock.h>
 

@@ -13,7 +13,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 MODES, SERVICES = "common/msg/filter_modes.hpp", "common/msg/services.hpp"
-SCHEMES, MODELS = "common/camera/source_schemes.hpp", "common/service/model_table.hpp"
+SCHEMES, MODELS = "common/camera/source_schemes.hpp", "common/service/model_locator.hpp"
 METRICS, FORMS = "common/service/metric_names.hpp", "common/io/recording_forms.hpp"
 OPTIONS = ("common/service/run_settings.hpp", "common/service/bus_config.hpp", "common/bus/bus_factory.hpp")
 SOURCES = sorted(path.relative_to(ROOT).as_posix() for folder in ("common", "services")

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/run/frame_verdict.hpp"
+#include "services/launcher/run/run_command.hpp"
 
 #include <gmock/gmock.h>
 

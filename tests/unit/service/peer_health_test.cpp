@@ -6,7 +6,7 @@
 
 #include <csignal>
 
-#include "common/service/peer_health.hpp"
+#include "common/service/peer_table.hpp"
 
 namespace rtd::service {
 namespace {

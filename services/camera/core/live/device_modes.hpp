@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/device_uri.hpp"
 #include "common/camera/image_files.hpp"
+#include "common/camera/live_uri.hpp"
 
 namespace rtd::camera {
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/device_uri.hpp"
 #include "common/camera/frame_source.hpp"
+#include "common/camera/live_uri.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
 #include "common/vision/depth_registration.hpp"
 #include "services/camera/core/live/device_health.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/engine_guard.hpp"
+#include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnx_file.hpp"
 #include "tests/bench/rtd_bench/detector/fleet_bench.hpp"
 
