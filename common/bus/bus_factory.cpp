@@ -19,13 +19,6 @@ namespace {
 
 constexpr std::uint32_t kMaxDomain = 232;  // above it the RTPS port numbers leave 16 bits
 
-struct Vendor {
-  const char* name;
-  std::shared_ptr<BusBackend> (*create)(const BusOptions&);
-  std::shared_ptr<RawBus> (*create_raw)(const BusOptions&);
-  bool secures;  ///< honours BusOptions::security
-};
-
 #if defined(RTD_HAVE_FASTDDS) && defined(RTD_HAVE_CYCLONEDDS)
 /// A connection to Cyclone DDS that offers services through Fast DDS, from the first one on: Cyclone DDS cannot send
 /// what clients of rmw_fastrtps know their replies by, while Fast DDS answers clients of both.
@@ -72,16 +65,18 @@ std::shared_ptr<BusBackend> create_cyclonedds(const BusOptions& options) {
 #endif
 
 /// A new vendor is a folder next to this file and one entry here. The first one is the default.
-const Vendor kVendors[] = {
+std::vector<Vendor>& vendors() {
+  static std::vector<Vendor> all = {
 #ifdef RTD_HAVE_FASTDDS
-    {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus,
-     true},
+      {"fastdds", [](const BusOptions& options) { return fastdds::create_backend(options); }, fastdds::create_raw_bus,
+       true},
 #endif
 #ifdef RTD_HAVE_CYCLONEDDS
-    {"cyclonedds", create_cyclonedds, cyclonedds::create_raw_bus, true},
+      {"cyclonedds", create_cyclonedds, cyclonedds::create_raw_bus, true},
 #endif
-    {"inprocess", inprocess::create_backend, inprocess::create_raw_bus, false},
-};
+  };
+  return all;
+}
 
 std::string join_names(const std::vector<std::string>& names) {
   std::string joined;
@@ -96,13 +91,13 @@ const Vendor& vendor_of(const BusOptions& options) {
     throw BusError("domain " + std::to_string(options.domain) + " is out of range, allowed: 0.." +
                    std::to_string(kMaxDomain) + " (--domain, ROS_DOMAIN_ID)");
   }
-  for (const Vendor& vendor : kVendors) {
+  for (const Vendor& vendor : vendors()) {
     if (options.vendor != vendor.name) continue;
-    if (options.vendor != "inprocess") require_network(options);
+    if (options.vendor != kInprocess) require_network(options);
     if (options.security.enabled() && !vendor.secures)
       throw BusError("bus '" + options.vendor +
                      "' knows no DDS-Security: leave --secure out or choose another (--dds)");
-    if (options.vendor == "inprocess") return vendor;
+    if (options.vendor == kInprocess) return vendor;
     if (options.network.multicast) require_discovery_port(options.domain);
     if (takes_participant_port(options)) require_participant_port(options.domain);
     return vendor;
@@ -113,8 +108,12 @@ const Vendor& vendor_of(const BusOptions& options) {
 
 }  // namespace
 
+void add_vendor(const Vendor& vendor) {
+  vendors().push_back(vendor);
+}
+
 std::string default_vendor() {
-  return kVendors[0].name;
+  return vendors().empty() ? kInprocess : vendors().front().name;
 }
 
 std::string vendor_names() {
@@ -123,13 +122,13 @@ std::string vendor_names() {
 
 std::vector<std::string> available_vendors() {
   std::vector<std::string> names;
-  for (const Vendor& vendor : kVendors) names.emplace_back(vendor.name);
+  for (const Vendor& vendor : vendors()) names.emplace_back(vendor.name);
   return names;
 }
 
 std::vector<std::string> dds_vendors() {
   std::vector<std::string> names = available_vendors();
-  std::erase(names, "inprocess");
+  std::erase(names, kInprocess);
   return names;
 }
 

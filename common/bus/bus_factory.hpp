@@ -97,6 +97,20 @@ struct BusOptions {
 
 RosGraph ros_graph_of(const BusOptions& options);
 
+/// The bus within one process that tests add: no network, no shared memory, nobody else.
+inline constexpr const char* kInprocess = "inprocess";
+
+class RawBus;
+/// What connects to a bus.
+struct Vendor {
+  const char* name;
+  std::shared_ptr<BusBackend> (*create)(const BusOptions&);
+  std::shared_ptr<RawBus> (*create_raw)(const BusOptions&);
+  bool secures;  ///< honours BusOptions::security
+};
+/// For a bus that no build has. Not thread-safe.
+void add_vendor(const Vendor& vendor);
+
 /// Connects to the bus. Throws BusError: unknown vendor (with the list of those built in), domain out of range,
 /// /dev/shm too small (with size and fix), participant refused.
 std::shared_ptr<Bus> connect(const BusOptions& options);

@@ -32,7 +32,7 @@ constexpr auto kSettling = 100ms;
 /// The vendor of an endpoint by its GUID (RTPS 2.2, 9.3.1.5), by the names of available_vendors(). Security makes GUIDs
 /// of certificates, but there all are of one vendor.
 std::string vendor_of(const WriterId& id, const BusOptions& options) {
-  if (options.vendor == "inprocess" || options.security.enabled()) return options.vendor;
+  if (options.vendor == kInprocess || options.security.enabled()) return options.vendor;
   if (id[0] != 0x01) return {};
   return id[1] == 0x0f ? "fastdds" : id[1] == 0x10 ? "cyclonedds" : "";
 }
@@ -58,7 +58,7 @@ class CallChannel {
     const std::lock_guard lock(connecting_);
     while (!is_connected() && Clock::now() < deadline) std::this_thread::sleep_for(kMoment);
     if (!is_connected()) return false;
-    if (!std::exchange(settled_, true) && bus_->vendor() != "inprocess") std::this_thread::sleep_for(kSettling);
+    if (!std::exchange(settled_, true) && bus_->vendor() != kInprocess) std::this_thread::sleep_for(kSettling);
     return true;
   }
 

@@ -21,12 +21,4 @@ std::shared_ptr<BusBackend> create_backend(const BusOptions& options, std::share
 std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
 }  // namespace cyclonedds
 
-/// A bus inside this process: services in threads of one test see each other as over DDS, without sockets. Messages are
-/// passed as shared pointers; a loaned message is never copied. Each reader has one thread. Raw endpoints: discovery,
-/// reliability, durability and keep-last histories behave as over DDS.
-namespace inprocess {
-std::shared_ptr<BusBackend> create_backend(const BusOptions& options);
-std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options);
-}  // namespace inprocess
-
 }  // namespace rtd::bus

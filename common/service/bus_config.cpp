@@ -241,7 +241,7 @@ bus::BusOptions to_bus_options(const BusConfig& config, const std::string& parti
   if (options.ros_graph == "auto") options.ros_graph = ros_graph_of_environment();
   options.security = security_options(config.security, participant_name, options.robot);
   options.rings = process_environment()(bus::kRingsVariable).value_or("");
-  if (options.vendor != "inprocess") options.environment = follow_dds_environment(process_environment(), options);
+  if (options.vendor != bus::kInprocess) options.environment = follow_dds_environment(process_environment(), options);
   return options;
 }
 

@@ -87,7 +87,7 @@ std::shared_ptr<bus::Bus> join_bus(const bus::BusOptions& options) {
   try {
     return bus::connect(options);
   } catch (const bus::BusError&) {
-    if (options.vendor == "inprocess" || bus::remove_shm_leftovers().removed.empty()) throw;
+    if (options.vendor == bus::kInprocess || bus::remove_shm_leftovers().removed.empty()) throw;
     return bus::connect(options);
   }
 }
@@ -135,7 +135,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   const std::string shared = definition.shared_name ? definition.shared_name() : std::string();
   std::optional<ServiceLock> only_one;
   if (shared.empty())
-    only_one.emplace(ServicePlace{definition.name, options.robot, options.domain, options.vendor == "inprocess"});
+    only_one.emplace(ServicePlace{definition.name, options.robot, options.domain, options.vendor == bus::kInprocess});
   BusProblems problems;
   options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
   options.traffic = std::make_shared<bus::Traffic>();
@@ -144,7 +144,7 @@ ExitCode run_on_bus(const ServiceDefinition& definition, const BusConfig& bus_co
   const std::shared_ptr<bus::Bus> bus = join_bus(options);
   options.on_problem = {};  // a further connection would say the same again
   std::jthread cleaner;     // next to the work: joining the bus is what a restarted service must be quick at
-  if (options.vendor != "inprocess") cleaner = std::jthread(remove_leftovers);
+  if (options.vendor != bus::kInprocess) cleaner = std::jthread(remove_leftovers);
   for (const std::string& warning : bus::host_warnings(options)) SPDLOG_INFO("event=host_limit cause=\"{}\"", warning);
   for (const bus::EnvironmentSetting& setting : options.environment) log_setting(setting);
   ExitCode code = kOk;

@@ -21,7 +21,7 @@ struct ServicePlace {
   std::string service;  ///< "slam"
   std::string robot;    ///< "" for one without a name
   std::uint32_t domain = 0;
-  bool own_process_only = false;  ///< a domain of this process alone (in-process bus)
+  bool own_process_only = false;  ///< a domain of this process alone (bus::kInprocess)
 };
 
 /// Holds the place of a service until destroyed or until its process ends, however that ends. The kernel keeps it, a

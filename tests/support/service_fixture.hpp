@@ -18,6 +18,7 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/runtime.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::test_support {
 
@@ -103,7 +104,7 @@ class ServiceFixture : public ::testing::Test {
   static bus::BusOptions next_domain() {
     static std::uint32_t domain = 100;  // one per test: nothing arrives from the test before
     bus::BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = bus::inprocess::vendor();
     options.domain = domain++;
     return options;
   }

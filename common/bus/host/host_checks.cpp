@@ -105,7 +105,7 @@ std::string why_not_shared_memory(const BusOptions& options, const HostLimits& l
 
 std::vector<std::string> host_warnings(const BusOptions& options, const HostLimits& limits) {
   std::vector<std::string> warnings;
-  if (options.vendor == "inprocess") return warnings;
+  if (options.vendor == kInprocess) return warnings;
   const std::uint64_t wanted_shm = kProcesses * options.shm_segment_mib * kMib + frame_pool_bytes();
   if (options.vendor == "fastdds" && limits.shm_total != 0 && limits.shm_total < wanted_shm) {
     warnings.push_back("/dev/shm holds " + std::to_string(limits.shm_total / kMib) +

@@ -18,6 +18,7 @@
 #include "common/bus/command_codec.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -262,7 +263,7 @@ TEST_P(Commands, outlive_a_client_that_leaves_before_the_answer) {
 }
 
 std::vector<std::tuple<std::string, std::string>> pairs() {
-  std::vector<std::tuple<std::string, std::string>> all = {{"inprocess", "inprocess"}};
+  std::vector<std::tuple<std::string, std::string>> all = {{inprocess::vendor(), inprocess::vendor()}};
   for (const std::string& server : dds_vendors())
     for (const std::string& client : dds_vendors()) all.emplace_back(server, client);
   return all;
@@ -296,7 +297,7 @@ TEST_P(MalformedCommands, do_not_keep_good_ones_from_being_answered) {
   EXPECT_EQ(client.call("slam/save_map", "good", kPatience_ms).message, "got 'good'");
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, MalformedCommands, testing::ValuesIn(available_vendors()),
+INSTANTIATE_TEST_SUITE_P(Vendors, MalformedCommands, testing::ValuesIn(inprocess::all_vendors()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "common/msg/plausible.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/support/frame_header.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -21,7 +22,7 @@ class FrameTopics : public testing::Test {
  protected:
   static std::shared_ptr<Bus> connect_inprocess() {
     BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = inprocess::vendor();
     options.domain = 8;
     return connect(options);
   }

@@ -11,13 +11,14 @@
 #include "common/concurrency/bounded_queue.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
 
 std::shared_ptr<Bus> connect_inprocess(std::uint32_t domain = 7) {
   BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = inprocess::vendor();
   options.domain = domain;
   return connect(options);
 }
@@ -186,13 +187,13 @@ TEST(BusFactory, an_unknown_vendor_names_the_known_ones) {
     connect(options);
     FAIL() << "an unknown vendor was accepted";
   } catch (const BusError& error) {
-    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("fastdss"), testing::HasSubstr("inprocess")));
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("fastdss"), testing::HasSubstr(default_vendor())));
   }
 }
 
 TEST(BusFactory, rejects_a_domain_above_232) {
   BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = inprocess::vendor();
   options.domain = 233;
   EXPECT_THROW(connect(options), BusError);
 }

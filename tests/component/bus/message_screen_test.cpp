@@ -13,6 +13,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/unit/bus/message_walk.hpp"
 
 namespace rtd::bus {
@@ -22,7 +23,7 @@ using namespace std::chrono_literals;
 
 std::vector<std::string> all_vendors() {
   std::vector<std::string> vendors = dds_vendors();
-  vendors.emplace_back("inprocess");
+  vendors.push_back(inprocess::vendor());
   return vendors;
 }
 

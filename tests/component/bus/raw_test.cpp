@@ -17,6 +17,7 @@
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -84,7 +85,7 @@ TEST_P(RawTopics, readers_are_known_by_the_name_of_their_connection_until_they_g
   ASSERT_TRUE(eventually(look));
   EXPECT_EQ(seen->topic, kTopic);
   EXPECT_FALSE(seen->own);
-  if (GetParam() != "inprocess") {
+  if (GetParam() != kInprocess) {
     EXPECT_EQ(from->participants()[participant_of(seen->id)], "raw-test");
   }
   reader.reset();
@@ -218,7 +219,7 @@ TEST_P(RawTopics, a_reader_that_asks_for_more_than_is_offered_gets_nothing) {
   EXPECT_EQ(none.size(), 0U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, RawTopics, ::testing::ValuesIn(available_vendors()), test_name);
+INSTANTIATE_TEST_SUITE_P(Vendors, RawTopics, ::testing::ValuesIn(inprocess::all_vendors()), test_name);
 
 TEST(SequenceGaps, counts_begin_with_the_first_number_received) {
   SequenceGaps gaps;

@@ -19,6 +19,7 @@
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -187,7 +188,7 @@ TEST_P(WriterIds, lose_next_to_nothing_of_the_wanted_writer_while_another_writes
 }
 
 std::vector<std::pair<std::string, std::string>> vendor_pairs() {
-  std::vector<std::pair<std::string, std::string>> all{{"inprocess", "inprocess"}};
+  std::vector<std::pair<std::string, std::string>> all{{inprocess::vendor(), inprocess::vendor()}};
   for (const std::string& from : dds_vendors())
     for (const std::string& to : dds_vendors()) all.emplace_back(from, to);
   return all;

@@ -63,10 +63,4 @@ class CameraOnBus : public ::testing::TestWithParam<std::string> {
   bus::Reader<msg::ServiceStatus> statuses_reader_;
 };
 
-inline std::vector<std::string> networked_vendors() {
-  std::vector<std::string> vendors = bus::available_vendors();
-  std::erase(vendors, "inprocess");
-  return vendors;
-}
-
 }  // namespace rtd::camera::test

@@ -23,6 +23,7 @@
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -107,7 +108,7 @@ class CameraServiceTest : public ::testing::Test {
   void SetUp() override {
     static std::uint32_t domain = kFirstDomain;
     bus::BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = bus::inprocess::vendor();
     options.domain = domain++;
     bus_ = bus::connect(options);
     statuses_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {

@@ -93,7 +93,7 @@ TEST_P(RealsenseCamera, devices_are_found_with_their_modes) {
   EXPECT_EQ(list_modes(cameras[0].modes, Stream::kColor), "64 x 48 RGB8 30 Hz; 128 x 96 RGB8 30 Hz");
 }
 
-INSTANTIATE_TEST_SUITE_P(EachVendor, RealsenseCamera, ::testing::ValuesIn(test::networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, RealsenseCamera, ::testing::ValuesIn(bus::dds_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RealsenseCamera);

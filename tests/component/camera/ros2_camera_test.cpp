@@ -246,12 +246,12 @@ TEST_P(RecordedRobot, refuses_a_topic_that_it_does_not_have_with_those_it_has) {
                                      ::testing::AllOf(HasSubstr("/other"), HasSubstr("/camera/imu"))));
 }
 
-INSTANTIATE_TEST_SUITE_P(EachVendor, RecordedRobot, ::testing::ValuesIn(test::networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, RecordedRobot, ::testing::ValuesIn(bus::dds_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RecordedRobot);
 
-INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(test::networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, Ros2Camera, ::testing::ValuesIn(bus::dds_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Ros2Camera);

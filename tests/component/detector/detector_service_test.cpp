@@ -21,6 +21,7 @@
 #include "common/service/peer_clocks.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/frame_header.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/service_fixture.hpp"
 
 namespace rtd::detector {

@@ -11,6 +11,7 @@
 #include "common/bus/bus_factory.hpp"
 #include "tests/support/frame_header.hpp"
 #include "tests/support/frame_list.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -50,7 +51,7 @@ class CollectorTest : public testing::Test {
     return record;
   }
 
-  std::shared_ptr<bus::Bus> bus_ = bus::connect({.vendor = "inprocess", .domain = 71});
+  std::shared_ptr<bus::Bus> bus_ = bus::connect({.vendor = bus::inprocess::vendor(), .domain = 71});
   bus::Writer<msg::RgbdFrame> frames_ = bus_->writer(bus::topics::kFrame);
   bus::Writer<msg::FeatureFrame> features_ = bus_->writer(bus::topics::kFeatures);
   bus::Writer<msg::TrackingResult> tracking_ = bus_->writer(bus::topics::kTracking);
@@ -112,7 +113,7 @@ TEST_F(CollectorTest, receives_from_filter_and_slam_before_the_first_frame) {
 }
 
 TEST_F(CollectorTest, subscribes_to_frames_when_asked) {
-  const auto camera = bus::connect({.vendor = "inprocess", .domain = 72});
+  const auto camera = bus::connect({.vendor = bus::inprocess::vendor(), .domain = 72});
   const bus::Writer<msg::RgbdFrame> frames = camera->writer(bus::topics::kFrame);
   FrameList store;
   Collector collector(*camera, store, {});
@@ -135,7 +136,7 @@ TEST_F(CollectorTest, shows_the_known_length_and_what_services_complain_about) {
 }
 
 TEST_F(CollectorTest, a_heartbeat_in_the_name_of_another_connection_does_not_count) {
-  const std::shared_ptr<bus::Bus> peer = bus::connect({.vendor = "inprocess", .domain = 71});
+  const std::shared_ptr<bus::Bus> peer = bus::connect({.vendor = bus::inprocess::vendor(), .domain = 71});
   bus::Writer<msg::ServiceStatus> forger = peer->writer(bus::topics::kStatus);
   const auto status_of = [](std::int64_t pid, double frames_in) {
     return msg::ServiceStatus{.service = "camera", .pid = pid, .metrics = {{"frames_in", frames_in}}};

@@ -71,13 +71,8 @@ TEST_P(PausedRun, continues_with_all_services_and_the_same_map) {
   }
 }
 
-std::vector<std::string> vendors() {
-  std::vector<std::string> all = bus::available_vendors();
-  std::erase(all, "inprocess");
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Vendors, PausedRun, testing::ValuesIn(vendors()), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Vendors, PausedRun, testing::ValuesIn(bus::dds_vendors()),
+                         [](const auto& test) { return test.param; });
 
 }  // namespace
 }  // namespace rtd::launcher

@@ -11,6 +11,7 @@
 #include "common/ros2/type_description.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/time_bounds.hpp"
 
 namespace rtd::replay {
@@ -26,7 +27,7 @@ class ReplayServiceTest : public testing::Test {
  protected:
   ReplayServiceTest() {
     static std::uint32_t domain = 150;
-    options_.vendor = "inprocess";
+    options_.vendor = bus::inprocess::vendor();
     options_.domain = domain++;
     raw_ = bus::connect_raw(options_);
     bus_ = bus::connect(options_);

@@ -25,6 +25,7 @@
 #include "common/service/metric_names.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/test_domain.hpp"
 
 extern char** environ;
@@ -249,13 +250,7 @@ TEST_P(Health, another_type_on_a_topic_is_counted) {
   EXPECT_LT(seconds_until([&] { return reports("detector", "topic.rt/slam/odometry.type_mismatch"); }), kPatienceS);
 }
 
-std::vector<std::string> vendors() {
-  std::vector<std::string> all = bus::available_vendors();
-  all.erase(std::remove(all.begin(), all.end(), "inprocess"), all.end());
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(Vendors, Health, ::testing::ValuesIn(vendors()),
+INSTANTIATE_TEST_SUITE_P(Vendors, Health, ::testing::ValuesIn(bus::dds_vendors()),
                          [](const auto& parameter) { return parameter.param; });
 
 }  // namespace

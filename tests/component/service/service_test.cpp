@@ -16,6 +16,7 @@
 #include "common/bus/message_cdr.hpp"
 #include "common/msg/largest_sample.hpp"
 #include "common/service/run_service.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::service {
 namespace {
@@ -36,7 +37,7 @@ bool eventually(Condition condition) {
 
 bus::BusOptions domain(std::uint32_t number) {
   bus::BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = bus::inprocess::vendor();
   options.domain = number;
   return options;
 }
@@ -230,17 +231,17 @@ class RunServiceTest : public ::testing::Test {
 
 TEST_F(RunServiceTest, runs_and_returns_the_code_of_the_service) {
   body_ = [](Runtime&) { return kRunFailed; };
-  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kRunFailed);
 }
 
 TEST_F(RunServiceTest, own_option_wins_over_set_and_set_over_file) {
   const std::string path = ::testing::TempDir() + "/rtd_service_test.yaml";
   std::ofstream(path) << "filter: {count: 4}\nslam: {whatever: 1}\n";
-  EXPECT_EQ(run({"--dds", "inprocess", "--config", path}), kOk);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", path}), kOk);
   EXPECT_EQ(config_.count, 4);
-  EXPECT_EQ(run({"--dds", "inprocess", "--config", path, "--set", "filter.count=5"}), kOk);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", path, "--set", "filter.count=5"}), kOk);
   EXPECT_EQ(config_.count, 5);
-  EXPECT_EQ(run({"--dds", "inprocess", "--config", path, "--set", "filter.count=5", "--count", "6"}), kOk);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", path, "--set", "filter.count=5", "--count", "6"}), kOk);
   EXPECT_EQ(config_.count, 6);
 }
 
@@ -248,27 +249,27 @@ TEST_F(RunServiceTest, a_second_one_in_the_domain_ends_with_its_own_code) {
   body_ = [this, depth = std::make_shared<int>(0)](Runtime&) {
     if ((*depth)++ > 0) return kOk;
     testing::internal::CaptureStderr();
-    const int second = run({"--dds", "inprocess"});
+    const int second = run({"--dds", bus::inprocess::vendor()});
     const std::string text = testing::internal::GetCapturedStderr();
     EXPECT_EQ(second, kAlreadyRuns);
     EXPECT_THAT(text, HasSubstr("another filter (pid " + std::to_string(getpid()) + ")"));
     EXPECT_THAT(text, HasSubstr("--domain"));
-    EXPECT_EQ(run({"--dds", "inprocess", "--domain", "77"}), kOk);
-    EXPECT_EQ(run({"--dds", "inprocess", "--robot", "anna"}), kOk);
+    EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--domain", "77"}), kOk);
+    EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--robot", "anna"}), kOk);
     *depth = 1;
     return kOk;
   };
-  EXPECT_EQ(run({"--dds", "inprocess"}), kOk);
-  EXPECT_EQ(run({"--dds", "inprocess"}), kOk) << "the place is free again";
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kOk);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kOk) << "the place is free again";
 }
 
 TEST_F(RunServiceTest, wrong_use_ends_with_two) {
   EXPECT_EQ(run({"--nonsense"}), kUsageOrConfig);
   EXPECT_EQ(run({"--dds", "zeromq"}), kUsageOrConfig);
-  EXPECT_EQ(run({"--dds", "inprocess", "--pace", "slow"}), kUsageOrConfig);
-  EXPECT_EQ(run({"--dds", "inprocess", "--domain", "300"}), kUsageOrConfig);
-  EXPECT_EQ(run({"--dds", "inprocess", "--set", "filter.count=11"}), kUsageOrConfig);
-  EXPECT_EQ(run({"--dds", "inprocess", "--config", "/nonexistent.yaml"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--pace", "slow"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--domain", "300"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--set", "filter.count=11"}), kUsageOrConfig);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", "/nonexistent.yaml"}), kUsageOrConfig);
 }
 
 /// What a service is given as bus options.
@@ -280,7 +281,7 @@ class BusOptionsTest : public RunServiceTest {
       network = runtime.bus_options.network;
       return kOk;
     };
-    arguments.insert(arguments.begin(), {"--dds", "inprocess"});
+    arguments.insert(arguments.begin(), {"--dds", bus::inprocess::vendor()});
     EXPECT_EQ(run(arguments), kOk);
     return network;
   }
@@ -318,14 +319,14 @@ TEST_F(BusOptionsTest, a_file_wins_over_the_profile_and_own_options_over_both) {
 TEST_F(BusOptionsTest, an_unknown_profile_names_the_known_ones) {
   for (const char* profile : {"lna", "/no/such.yaml", "/tmp"}) {
     ::testing::internal::CaptureStderr();
-    EXPECT_EQ(run({"--dds", "inprocess", "--profile", profile}), kUsageOrConfig);
+    EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--profile", profile}), kUsageOrConfig);
     EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("lan, localhost, secure, wifi")) << profile;
   }
 }
 
 TEST_F(RunServiceTest, an_exception_is_a_failed_run) {
   body_ = [](Runtime&) -> ExitCode { throw std::runtime_error("the sky fell"); };
-  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kRunFailed);
 }
 
 TEST_F(RunServiceTest, sigterm_asks_the_service_to_stop) {
@@ -333,7 +334,7 @@ TEST_F(RunServiceTest, sigterm_asks_the_service_to_stop) {
     kill(getpid(), SIGTERM);
     return runtime.stop.wait_for(5s) ? kOk : kRunFailed;
   };
-  EXPECT_EQ(run({"--dds", "inprocess"}), kOk);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kOk);
 }
 
 TEST(BoundedEndTest, ends_the_process_only_when_its_time_is_up) {
@@ -358,7 +359,8 @@ TEST_F(RunServiceTest, one_that_was_asked_to_end_goes_before_it_is_killed) {
     runtime.stop.request_stop();
     return run_to_end(Stuck(), runtime);
   };
-  EXPECT_EXIT(run({"--dds", "inprocess"}), ::testing::ExitedWithCode(kPartialLoss), "did not end within 400 ms");
+  EXPECT_EXIT(run({"--dds", bus::inprocess::vendor()}), ::testing::ExitedWithCode(kPartialLoss),
+              "did not end within 400 ms");
 }
 
 TEST_F(RunServiceTest, the_end_is_bounded_before_a_service_is_destroyed) {
@@ -374,7 +376,7 @@ TEST_F(RunServiceTest, the_end_is_bounded_before_a_service_is_destroyed) {
     runtime.bound_end = [](int code) { steps.push_back("bounded " + std::to_string(code)); };
     return run_to_end(Service(), runtime);
   };
-  EXPECT_EQ(run({"--dds", "inprocess"}), kRunFailed);
+  EXPECT_EQ(run({"--dds", bus::inprocess::vendor()}), kRunFailed);
   EXPECT_EQ(steps, (std::vector<std::string>{"run", "bounded 1", "destroyed"}));
 }
 

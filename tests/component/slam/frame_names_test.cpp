@@ -16,6 +16,7 @@
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/slam_service.hpp"
 #include "tests/support/frames_table.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/service_fixture.hpp"
 #include "tests/support/settled_map.hpp"
 #include "tests/support/two_places.hpp"
@@ -190,7 +191,7 @@ TEST_F(FramesOfMaps, never_change_over_loss_merge_reset_and_load) {
 
 TEST(SlamPublisher, announces_that_the_same_map_was_corrected) {
   bus::BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = bus::inprocess::vendor();
   options.robot = "anna";
   const auto bus = bus::connect(options);
   Inbox<msg::TransformStamped> jumps;

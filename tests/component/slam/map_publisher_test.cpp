@@ -16,6 +16,7 @@
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/settled_map.hpp"
 #include "tests/support/walk_world.hpp"
 
@@ -100,7 +101,7 @@ class MapPublisherTest : public testing::Test {
   static bus::BusOptions options() {
     static std::uint32_t domain = 60;
     bus::BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = bus::inprocess::vendor();
     options.domain = domain++;
     return options;
   }

@@ -257,13 +257,7 @@ TEST_P(Topics, of_unknown_types_are_listed_and_measured_but_not_printed) {
   EXPECT_THAT(err_.str(), HasSubstr("other_msgs/msg/Thing, whose fields are not known here"));
 }
 
-std::vector<std::string> networked_vendors() {
-  std::vector<std::string> vendors = bus::available_vendors();
-  std::erase(vendors, "inprocess");
-  return vendors;
-}
-
-INSTANTIATE_TEST_SUITE_P(EachVendor, Topics, ::testing::ValuesIn(networked_vendors()),
+INSTANTIATE_TEST_SUITE_P(EachVendor, Topics, ::testing::ValuesIn(bus::dds_vendors()),
                          [](const auto& vendor) { return vendor.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Topics);
 

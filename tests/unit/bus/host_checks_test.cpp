@@ -108,7 +108,7 @@ TEST(HostChecks, ports_of_another_user_in_the_domain_are_named_with_udp_in_their
 
 TEST(HostChecks, the_inprocess_bus_needs_nothing_of_the_host) {
   BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = kInprocess;
   EXPECT_THAT(host_warnings(options, {8 * kMib, kMib, 1000, 1000}), IsEmpty());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/topic_follower.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 #include <gmock/gmock.h>
 
@@ -23,7 +24,7 @@ class TopicFollowerTest : public ::testing::Test {
  protected:
   static std::shared_ptr<RawBus> connect() {
     BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = inprocess::vendor();
     options.domain = 77;
     return connect_raw(options);
   }

@@ -6,6 +6,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -79,7 +80,7 @@ TEST(MoverMarkers, are_a_box_an_arrow_and_a_name_each) {
 
 TEST(MoversPublisher, follows_the_camera_into_another_map) {
   bus::BusOptions options;
-  options.vendor = "inprocess";
+  options.vendor = bus::inprocess::vendor();
   const auto bus = bus::connect(options);
   test_support::Inbox<msg::Detection3DArray> boxes;
   test_support::Inbox<msg::Movers> own;

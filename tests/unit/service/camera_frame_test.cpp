@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "common/service/camera_frame.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ class CameraFrame : public testing::Test {
  protected:
   static std::shared_ptr<bus::Bus> join() {
     bus::BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = bus::inprocess::vendor();
     options.robot = "anna";
     return bus::connect(options);
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/bus/commands.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/test_domain.hpp"
 
 namespace rtd::service {
@@ -41,7 +42,7 @@ class ParametersTest : public testing::Test {
     note("replay/speed", true);
   }
 
-  std::shared_ptr<bus::Bus> bus_ = bus::connect({.vendor = "inprocess", .domain = test_domain()});
+  std::shared_ptr<bus::Bus> bus_ = bus::connect({.vendor = bus::inprocess::vendor(), .domain = test_domain()});
   StopToken stop_;
   Heartbeat heartbeat_{*bus_, "replay", stop_};
   std::vector<std::string> calls_;

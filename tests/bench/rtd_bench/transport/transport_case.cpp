@@ -61,11 +61,10 @@ std::optional<Path> parse_path(const std::string& text) {
 }
 
 std::vector<TransportCase> transport_cases(const TransportOptions& options) {
-  std::vector<std::string> vendors = options.vendors.empty() ? bus::available_vendors() : options.vendors;
+  std::vector<std::string> vendors = options.vendors.empty() ? bus::dds_vendors() : options.vendors;
   std::vector<TransportCase> cases;
   for (const Payload payload : options.payloads) {
     for (const std::string& vendor : vendors) {
-      if (vendor == "inprocess") continue;
       for (const PathName& path : kPaths) {
         const bool offered = path.vendor[0] == '\0' || vendor == path.vendor;
         if (offered && (entry(payload).fixed_size || !path.fixed_size_only)) {

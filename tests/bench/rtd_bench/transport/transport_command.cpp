@@ -67,7 +67,7 @@ void add_transport_commands(CLI::App& app, TransportRequest& request) {
   add_measuring_options(*bench, request.options);
   bench->add_option("--dds", request.options.vendors, "Only these DDS implementations")
       ->delimiter(',')
-      ->check(CLI::IsMember(bus::available_vendors()));
+      ->check(CLI::IsMember(bus::dds_vendors()));
   bench
       ->add_option("--only", request.payloads,
                    "Only these of frame, frame-848x480, frame-1280x720, frame-1920x1200, jpeg, features, pose")

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/inprocess/domain.hpp"
+#include "tests/support/inprocess/domain.hpp"
 
 #include <cstring>
 #include <map>

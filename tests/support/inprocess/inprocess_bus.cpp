@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/bus/vendors.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 
 #include <chrono>
 #include <cstring>
@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "common/bus/backend.hpp"
-#include "common/bus/inprocess/domain.hpp"
+#include "common/bus/bus_factory.hpp"
 #include "common/bus/prefixed_calls.hpp"
+#include "tests/support/inprocess/domain.hpp"
 
 namespace rtd::bus::inprocess {
 namespace {
@@ -37,7 +38,8 @@ class InprocessWriter : public WriterBackend {
                   StatusCallbacks callbacks, const WriterId& connection)
       : domain_(std::move(domain)),
         id_(id),
-        endpoint_{{topic, dds_type_name(id), qos_settings(profile)}, StatusReporter(std::move(callbacks)),
+        endpoint_{{topic, dds_type_name(id), qos_settings(profile)},
+                  StatusReporter(std::move(callbacks)),
                   domain_->new_id(connection)} {
     domain_->add(endpoint_);
   }
@@ -69,8 +71,7 @@ class InprocessWriter : public WriterBackend {
   std::map<void*, std::shared_ptr<void>> loans_;
 };
 
-std::function<void(Message)> wanted_messages(ErasedCallback on_message,
-                                             std::function<bool(const WriterId&)> accepts) {
+std::function<void(Message)> wanted_messages(ErasedCallback on_message, std::function<bool(const WriterId&)> accepts) {
   return [on_message = std::move(on_message), accepts = std::move(accepts)](Message message) {
     if (!accepts || accepts(message.writer)) on_message(std::move(message.content), message.writer);
   };
@@ -114,9 +115,9 @@ class InprocessRawWriter : public RawWriter {
     block->assign(cdr);
     const std::lock_guard lock(mutex_);
     const std::int64_t now_ns = realtime_ns();
-    domain_->publish(endpoint_, std::make_shared<const RawSample>(RawSample{endpoint_.id, ++sequence_,
-                                                                            source_ns == 0 ? now_ns : source_ns, now_ns,
-                                                                            std::move(block)}));
+    domain_->publish(endpoint_,
+                     std::make_shared<const RawSample>(RawSample{
+                         endpoint_.id, ++sequence_, source_ns == 0 ? now_ns : source_ns, now_ns, std::move(block)}));
     return true;
   }
   int matched() const override { return endpoint_.status.matched(); }
@@ -149,7 +150,7 @@ std::unique_ptr<CallEndpoint> create_calls_in(const std::shared_ptr<Domain>& dom
 class InprocessBackend : public BusBackend {
  public:
   explicit InprocessBackend(const BusOptions& options)
-      : BusBackend("inprocess"),
+      : BusBackend(kInprocess),
         domain_(Domain::join(options.domain, Domain::Content::kTyped)),
         calls_(Domain::join(options.domain, Domain::Content::kRaw)),
         connection_(domain_->new_id()) {}
@@ -175,7 +176,7 @@ class InprocessBackend : public BusBackend {
 class InprocessRawBus : public RegistryRawBus {
  public:
   explicit InprocessRawBus(const BusOptions& options)
-      : RegistryRawBus("inprocess"), domain_(Domain::join(options.domain, Domain::Content::kRaw)) {
+      : RegistryRawBus(kInprocess), domain_(Domain::join(options.domain, Domain::Content::kRaw)) {
     domain_->add(registry_);
   }
   ~InprocessRawBus() override { domain_->remove(registry_); }
@@ -208,6 +209,16 @@ std::shared_ptr<BusBackend> create_backend(const BusOptions& options) {
 
 std::shared_ptr<RawBus> create_raw_bus(const BusOptions& options) {
   return std::make_shared<InprocessRawBus>(options);
+}
+
+std::string vendor() {
+  static const bool added = (add_vendor({kInprocess, create_backend, create_raw_bus, false}), true);
+  return added ? kInprocess : "";
+}
+
+std::vector<std::string> all_vendors() {
+  vendor();
+  return available_vendors();
 }
 
 }  // namespace rtd::bus::inprocess
