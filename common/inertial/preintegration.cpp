@@ -56,18 +56,6 @@ void Preintegration::add(const Eigen::Vector3d& gyro_rad_s, const Eigen::Vector3
   duration_s_ += dt_s;
 }
 
-Preintegration Preintegration::corrected(const ImuBias& bias) const {
-  Eigen::Matrix<double, 6, 1> change;
-  change << bias.gyro_rad_s - bias_.gyro_rad_s, bias.accel_m_s2 - bias_.accel_m_s2;
-  const Eigen::Matrix<double, 9, 1> effect = bias_jacobian_ * change;
-  Preintegration other = *this;
-  other.bias_ = bias;
-  other.rotation_ = rotation_ * so3_exp(effect.head<3>());
-  other.velocity_ += effect.segment<3>(3);
-  other.position_ += effect.tail<3>();
-  return other;
-}
-
 void ImuStream::add(const ImuSample& sample) {
   if (!is_plausible(sample)) {
     ++counters_.invalid;

@@ -54,9 +54,6 @@ class Preintegration {
   /// Derivative of the same by (gyro bias, accel bias).
   const Matrix96d& bias_jacobian() const { return bias_jacobian_; }
 
-  /// The same samples with another bias, to first order.
-  Preintegration corrected(const ImuBias& bias) const;
-
  private:
   ImuBias bias_;
   ImuNoise noise_;

@@ -28,11 +28,6 @@ bool StopToken::wait_for(std::chrono::nanoseconds duration) const {
   return changed_.wait_for(lock, duration, [this] { return stopped_; });
 }
 
-void StopToken::wait() const {
-  std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return stopped_; });
-}
-
 void StopToken::on_stop(std::function<void()> action) {
   {
     const std::lock_guard lock(mutex_);

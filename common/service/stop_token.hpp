@@ -17,7 +17,6 @@ class StopToken {
   bool stop_requested() const;
   /// Sleeps until stop is requested or the time has passed; true when stop was requested.
   bool wait_for(std::chrono::nanoseconds duration) const;
-  void wait() const;
   /// Runs `action` when stop is requested (at once when it already was). For closing queues.
   void on_stop(std::function<void()> action);
 

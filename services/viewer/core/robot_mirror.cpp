@@ -79,12 +79,6 @@ void TruthTrack::add_estimate(std::int64_t stamp_ns, const Eigen::Vector3d& posi
   pair();
 }
 
-void TruthTrack::clear() {
-  const std::uint64_t revision = revision_;
-  *this = TruthTrack();
-  revision_ = revision + 1;
-}
-
 /// Truth carries the stamp of its frame, as the estimate does.
 void TruthTrack::pair() {
   std::erase_if(waiting_estimates_, [this](const Stamped& estimate) {

@@ -27,7 +27,6 @@ class TruthTrack {
  public:
   void add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
   void add_estimate(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
-  void clear();
 
   /// Counts alignments that differ visibly from the one before: all points are to be drawn again.
   std::uint64_t revision() const { return revision_; }

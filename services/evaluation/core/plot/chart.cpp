@@ -173,14 +173,6 @@ Range range_of(const std::vector<double>& values) {
   return range.span() < smallest ? grown_to(range, std::max(smallest, 1e-3)) : range;
 }
 
-Range range_from_zero(const std::vector<double>& values) {
-  double highest = 0;
-  for (const double v : values) {
-    if (std::isfinite(v)) highest = std::max(highest, v);
-  }
-  return {0, highest > 0 ? highest * 1.06 : 1};
-}
-
 std::vector<double> nice_ticks(const Range& range, int wanted) {
   std::vector<double> ticks;
   if (!(range.span() > 0) || !std::isfinite(range.span())) return ticks;

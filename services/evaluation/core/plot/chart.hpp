@@ -84,8 +84,6 @@ struct Range {
 
 /// Smallest range of the finite values; {0, 1} when there are none, widened when all are equal.
 Range range_of(const std::vector<double>& values);
-/// From 0 to a little above the largest finite value: for quantities that are never negative.
-Range range_from_zero(const std::vector<double>& values);
 
 /// About `wanted` round numbers (1, 2 or 5 times a power of ten apart) inside the range.
 std::vector<double> nice_ticks(const Range& range, int wanted);

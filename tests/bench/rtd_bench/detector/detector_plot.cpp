@@ -41,7 +41,7 @@ double height_of(const std::vector<Result>& cases) {
 BarLayout layout_of(const std::vector<DetectorResult>& cases) {
   std::vector<double> all_ms;
   for (const DetectorResult& result : cases) all_ms.push_back(std::max(result.ms_per_image(), result.cpu_ms_per_image));
-  BarLayout layout{range_from_zero(all_ms)};
+  BarLayout layout{{0, all_ms.empty() ? 1 : std::ranges::max(all_ms) * 1.06}};
   layout.bottom = layout.top + height_of(cases);
   return layout;
 }
