@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/endpoints.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/prefixed_calls.hpp"
 #include "common/bus/ros_graph.hpp"
 

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/bus/cyclonedds/codec.hpp"
 #include "common/bus/cyclonedds/qos_mapping.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
 
 namespace rtd::bus::cyclonedds {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
+#include "common/bus/message_types.hpp"
 #include "common/bus/raw_bus.hpp"
 
 struct ddsi_sertype;
-
 /// Serialised samples in and out of Cyclone, which never looks into them.
 namespace rtd::bus::cyclonedds {
 
@@ -50,5 +50,16 @@ bool write_sample(std::int32_t writer, const ddsi_sertype* type, std::shared_ptr
 
 /// Memory for a sample of so many bytes, header included.
 std::shared_ptr<ByteBlock> acquire_block(const ddsi_sertype* type, std::size_t size);
+
+SampleType sample_type(MessageId id);
+
+/// The message as a sample in memory of the type's pool.
+std::shared_ptr<ByteBlock> encode(MessageId id, const ddsi_sertype* type, const void* message);
+
+/// The message that a sample holds, a plain struct of common/msg; null when the bytes do not make one.
+std::shared_ptr<const void> decode(MessageId id, const std::shared_ptr<const ByteBlock>& bytes);
+
+/// A sample of a plain type with its header written and its fields to be filled in.
+std::shared_ptr<ByteBlock> plain_block(MessageId id, const ddsi_sertype* type);
 
 }  // namespace rtd::bus::cyclonedds

@@ -10,6 +10,11 @@
 
 namespace rtd::launcher {
 
+/// Joins what the services wrote into `folder` (common/service/trace.hpp) to one file in the Trace Event Format, which
+/// Perfetto and chrome://tracing open, and removes the folder. The last line of a killed process may be cut off; it is
+/// left out. Returns why that failed; empty when it did not.
+std::string join_trace(const std::string& folder, const std::string& path);
+
 /// Whether frames are missing because camera, filter or slam died: what a running camera would have given meanwhile is
 /// among them.
 bool died_with_frames(const run_record::RunRecord& record);

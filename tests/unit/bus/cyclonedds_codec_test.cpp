@@ -8,7 +8,7 @@
 #include <memory>
 #include <random>
 
-#include "common/bus/cyclonedds/codec.hpp"
+#include "common/bus/cyclonedds/samples.hpp"
 #include "tests/unit/bus/recorded_samples.hpp"
 
 namespace rtd::bus::cyclonedds {

@@ -46,7 +46,7 @@ ALLOWED = {
     "common/service/peer_table.cpp": KERNEL,
     "common/service/standard_streams.hpp": "/dev/null",
     "services/evaluation/core/datasets/openloris.cpp": "OpenCV reads a text in memory",
-    "services/launcher/core/run/trace_file.cpp": OWN_FOLDER,
+    "services/launcher/run/run_command.cpp": OWN_FOLDER,
     "services/launcher/run/run_setup.cpp": OWN_FOLDER,
     "services/recorder/core/output_files.cpp": OWN_FOLDER,
     "services/viewer/web/site.cpp": "three.js as it is installed; counts what it sees, follows no links out",

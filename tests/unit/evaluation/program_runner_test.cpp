@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "services/evaluation/commands/program_runner.hpp"
+#include "services/evaluation/commands/experiment_command.hpp"
 #include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/core/run/trace_file.hpp"
+#include "services/launcher/run/run_command.hpp"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -47,7 +47,8 @@ TEST_F(TraceFileTest, leaves_out_what_a_killed_process_did_not_finish) {
 
 TEST_F(TraceFileTest, says_what_it_cannot_do) {
   EXPECT_THAT(join_trace(folder_ / "none", folder_ / "trace.json"), testing::HasSubstr("No such file"));
-  EXPECT_THAT(join_trace(parts_, folder_ / "none/trace.json"), testing::HasSubstr("none/trace.json: there is no such folder"));
+  EXPECT_THAT(join_trace(parts_, folder_ / "none/trace.json"),
+              testing::HasSubstr("none/trace.json: there is no such folder"));
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "services/filter/core/belief/surface_beliefs.hpp"
+#include "services/filter/core/belief/static_probability.hpp"
 #include "services/filter/core/modes/mode_judge.hpp"
 #include "services/filter/core/motion/dynamic_regions.hpp"
 #include "services/filter/core/motion/ego_motion.hpp"

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include "services/filter/core/belief/surface_beliefs.hpp"
-
 namespace rtd::filter {
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/belief/surface_beliefs.hpp"
+#include "services/filter/core/belief/static_probability.hpp"
 
 #include <gtest/gtest.h>
 
