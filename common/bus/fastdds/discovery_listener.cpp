@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include "common/bus/fastdds/discovery_listener.hpp"
+#include "common/bus/host/shm_names.hpp"
 
 #include <chrono>
 #include <filesystem>
