@@ -39,6 +39,10 @@ double number_in(const RecordedMessage& message) {
   return static_cast<double>(cursor.read<float>());
 }
 
+double realsense_unit_m(const RecordedMessage& message) {
+  return message.type == kText ? io::parse_number(text_of(message)).value_or(0) : number_in(message);
+}
+
 SettingsText settings_of(const RecordedMessage& message) {
   std::string text = text_of(message);
   std::ranges::replace(text, ';', '\n');
@@ -85,6 +89,36 @@ msg::CameraInfo text_camera_info(const RecordedMessage& message) {
 }
 
 constexpr std::string_view kOrbbecImages = "/cam/sensor_", kOrbbecProfiles = "/cam/streamProfileType_";
+constexpr const char* kOrbbecProperties = "/cam/property";
+
+/// Passes over a ROS 1 header.
+void skip_header(ros::ByteCursor& cursor) {
+  cursor.take(12);  // number and stamp
+  cursor.take(cursor.read<std::uint32_t>());
+}
+
+/// Metres of a depth unit where the message is the property that has it: of Gemini 330 and its like a number of
+/// millimetres, of others one of seven steps.
+std::optional<double> orbbec_unit_m(const RecordedMessage& message) {
+  constexpr std::uint32_t kPrecisionLevel = 75, kFlexibleUnit = 176, kBytes = 4;  // OBPropertyID
+  constexpr std::array kLevels_mm = {1.0, 0.8, 0.4, 0.1, 0.2, 0.5, 0.05};
+  ros::ByteCursor cursor(message.bytes);
+  skip_header(cursor);
+  const auto property = cursor.read<std::uint32_t>();
+  if ((property != kPrecisionLevel && property != kFlexibleUnit) || cursor.read<std::uint32_t>() != kBytes) return {};
+  if (property == kFlexibleUnit) return static_cast<double>(cursor.read<float>()) / 1000;
+  const auto level = cursor.read<std::uint32_t>();
+  return level < kLevels_mm.size() ? std::optional(kLevels_mm[level] / 1000) : std::nullopt;
+}
+
+/// The unit of depth among the properties of Orbbec's SDK; empty in recordings made before it was one of them.
+std::optional<double> orbbec_unit_m(recordings::Reader& recording) {
+  recording.play({kOrbbecProperties});
+  while (const std::optional<RecordedMessage> message = recording.next()) {
+    if (const std::optional<double> unit_m = orbbec_unit_m(*message)) return unit_m;
+  }
+  return std::nullopt;
+}
 
 using ProfileFields = std::map<std::string, std::vector<double>>;
 
@@ -92,8 +126,7 @@ using ProfileFields = std::map<std::string, std::vector<double>>;
 /// them, a line each: "float32[9] rotationMatrix".
 ProfileFields numbers_in(const RecordedMessage& message, const std::string& definition) {
   ros::ByteCursor cursor(message.bytes);
-  cursor.take(12);  // number and stamp
-  cursor.take(cursor.read<std::uint32_t>());
+  skip_header(cursor);
   ProfileFields numbers;
   for (const io::TextLine& line : io::split_lines(definition, " []\t\r")) {
     if (line.fields.front().starts_with('=')) break;  // other types
@@ -162,13 +195,13 @@ msg::CameraInfo recorded_camera_info(recordings::Reader& recording, const std::s
 }
 
 std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth_topic) {
-  const std::string topic = sdk_depth_unit_topic(depth_topic);
+  const bool orbbec = !orbbec_profile_topic(depth_topic).empty();
+  const std::string topic = orbbec ? kOrbbecProperties : sdk_depth_unit_topic(depth_topic);
   if (topic.empty() || topic_named(recording, topic) == nullptr) return std::nullopt;
   constexpr double kMin_m = 1e-6, kMax_m = 0.1;
-  const RecordedMessage message = first_of(recording, topic);
-  const double unit_m = message.type == kText ? io::parse_number(text_of(message)).value_or(0) : number_in(message);
-  if (unit_m >= kMin_m && unit_m <= kMax_m) return unit_m;  // NaN compares false
-  throw SourceError(recording.name() + ", topic " + topic + ": the depth unit is " + std::to_string(unit_m) +
+  const std::optional<double> unit_m = orbbec ? orbbec_unit_m(recording) : realsense_unit_m(first_of(recording, topic));
+  if (!unit_m || (*unit_m >= kMin_m && *unit_m <= kMax_m)) return unit_m;  // NaN compares false
+  throw SourceError(recording.name() + ", topic " + topic + ": the depth unit is " + std::to_string(*unit_m) +
                     " m, allowed is 0.000001 to 0.1; give the units of a metre with ?depth_factor=");
 }
 

@@ -20,7 +20,8 @@ std::string orbbec_profile_topic(const std::string& image_topic);
 /// ros::WireError when it is damaged.
 msg::CameraInfo recorded_camera_info(recordings::Reader& recording, const std::string& topic);
 
-/// The unit of 16-bit depth; empty when none is recorded. Throws SourceError for one that cannot be.
+/// The unit of 16-bit depth: a message of RealSense's SDK, a property of Orbbec's; empty when none is recorded. Throws
+/// SourceError for one that cannot be.
 std::optional<double> sdk_depth_unit_m(recordings::Reader& recording, const std::string& depth_topic);
 
 /// T_color_depth. RealSense records for each stream how points come from a reference stream (of the number at the end

@@ -142,13 +142,14 @@ constexpr const char* kProfileDefinition =
     "uint16 width\nuint16 height\nuint16 fps\nfloat32[4] cameraIntrinsic\nfloat32[8] cameraDistortion\n"
     "uint8 distortionModel\n";
 
+void append(std::vector<std::uint8_t>& bytes, auto value) {
+  const auto raw = std::bit_cast<std::array<std::uint8_t, sizeof(value)>>(value);
+  bytes.insert(bytes.end(), raw.begin(), raw.end());
+}
 /// A stream profile as Orbbec's SDK 2 records it: 121 bytes.
 std::vector<std::uint8_t> orbbec_profile(const geometry::CameraModel& camera, const Eigen::Isometry3d& T_color_this) {
   std::vector<std::uint8_t> bytes(18);
-  const auto add = [&bytes](auto value) {
-    const auto raw = std::bit_cast<std::array<std::uint8_t, sizeof(value)>>(value);
-    bytes.insert(bytes.end(), raw.begin(), raw.end());
-  };
+  const auto add = [&bytes](auto value) { append(bytes, value); };
   const auto add_float = [&add](double value) { add(static_cast<float>(value)); };
   for (const double value : T_color_this.linear().transpose().reshaped()) add_float(value);
   for (const double value : T_color_this.translation()) add_float(1000 * value);
@@ -175,6 +176,35 @@ void add_orbbec(ImageBag& bag, const TwoCameras& cameras, const Eigen::Isometry3
   bag.add("/cam/sensor_6/frameType_8", kRosImage, cameras.color_image(1), 1);
   bag.add("/cam/sensor_2/frameType_2", kRosImage, color, 1);
   bag.add("/cam/sensor_3/frameType_3", kRosImage, depth, 1);
+}
+
+/// A property of the device as the SDK records it: its number has four bytes, whatever the definition says.
+void add_orbbec_property(ImageBag& bag, std::uint32_t number, auto value) {
+  std::vector<std::uint8_t> bytes(16);  // header
+  append(bytes, number);
+  append(bytes, static_cast<std::uint32_t>(sizeof value));
+  append(bytes, value);
+  append(bytes, static_cast<std::uint32_t>(sizeof value));
+  bag.add_defined("/cam/property", "custom_msg/OBProperty",
+                  "std_msgs/Header header\nuint8 propertyId\nuint8[] data\nuint32 datasize\n", bytes, 0.5);
+}
+double depth_unit_of_orbbec(std::uint32_t number, auto value) {
+  const TwoCameras cameras;
+  ImageBag bag;
+  add_orbbec_property(bag, 1024, std::uint64_t{75});
+  add_orbbec_property(bag, number, value);
+  add_orbbec(bag, cameras, cameras.T_color_depth);
+  return play(bag.uri()).at(0).image.depth_scale_m;
+}
+TEST(Registration, of_an_orbbec_sdk_bag_in_the_depth_unit_among_its_properties) {
+  EXPECT_NEAR(depth_unit_of_orbbec(176, 0.25F), 0.00025, 1e-9) << "Gemini 330: millimetres";
+  EXPECT_NEAR(depth_unit_of_orbbec(75, std::uint32_t{3}), 0.0001, 1e-9) << "a level of precision";
+  EXPECT_NEAR(depth_unit_of_orbbec(75, std::uint32_t{7}), 0.001, 1e-9) << "no level";
+  EXPECT_NEAR(depth_unit_of_orbbec(76, std::uint32_t{3}), 0.001, 1e-9) << "another property";
+  ImageBag bag;
+  add_orbbec_property(bag, 176, 0.0F);
+  add_orbbec(bag, TwoCameras(), TwoCameras().T_color_depth);
+  expect_refused(bag.uri(), AllOf(HasSubstr("/cam/property"), HasSubstr("?depth_factor=")));
 }
 
 TEST(Registration, of_an_orbbec_sdk_bag_by_its_stream_profiles) {
