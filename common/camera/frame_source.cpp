@@ -42,6 +42,10 @@ constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
     {"repeated", "images come more than once, with the same bytes and stamp: each counts once"},
     {"other_camera",
      "two cameras send on one topic, and only the first is followed: give each of them topics of its own, or stop one"},
+    {"emitter_dots",
+     "the infrared camera's emitter is switched on and off in turn: images with its dots are left out, as the dots "
+     "move "
+     "with the camera"},
 }};
 
 }  // namespace
@@ -60,13 +64,19 @@ std::optional<SkipReason> skip_reason_of(std::string_view name) {
   return std::nullopt;
 }
 
+bool is_intended(SkipReason reason) {
+  return reason == SkipReason::kRepeated || reason == SkipReason::kEmitterDots;
+}
+
 std::uint64_t SourceCounters::skipped_total() const {
   return std::accumulate(skipped.begin(), skipped.end(), std::uint64_t{0});
 }
 
 std::uint64_t SourceCounters::frames_left_out() const {
   const std::uint64_t alone = of(SkipReason::kNoDepthPartner);
-  return skipped_total() - of(SkipReason::kRepeated) - alone + std::min(alone, depth_alone);
+  std::uint64_t left_out = 0;
+  for (std::size_t i = 0; i < kSkipReasons; ++i) left_out += is_intended(static_cast<SkipReason>(i)) ? 0 : skipped[i];
+  return left_out - alone + std::min(alone, depth_alone);
 }
 
 std::string why_unread(const io::IoError& error) {
@@ -75,8 +85,8 @@ std::string why_unread(const io::IoError& error) {
 }
 
 void SkipLog::add(SkippedInput input) {
-  constexpr std::array kUsable = {SkipReason::kNoDepthPartner, SkipReason::kOverrun, SkipReason::kRepeated};
-  if (std::ranges::find(kUsable, input.reason) == kUsable.end()) {
+  const bool usable = input.reason == SkipReason::kNoDepthPartner || input.reason == SkipReason::kOverrun;
+  if (!usable && !is_intended(input.reason)) {
     ++unusable_;
     newest_ = input.detail;
   }

@@ -40,8 +40,9 @@ enum class SkipReason {
   kColorFrozen,      ///< running camera: the colour image has not changed for a second
   kRepeated,         ///< the frame before once more, the same bytes with the same stamp: nothing is lost
   kOtherCamera,      ///< of another camera that sends on the same topic
+  kEmitterDots,      ///< infrared with the dots of an emitter that is switched on and off in turn
 };
-inline constexpr std::size_t kSkipReasons = 13;
+inline constexpr std::size_t kSkipReasons = 14;
 
 /// "color_unreadable": for counters and logs.
 const char* to_string(SkipReason reason);
@@ -49,6 +50,8 @@ const char* to_string(SkipReason reason);
 const char* explain(SkipReason reason);
 /// The reason of that name; empty for another text.
 std::optional<SkipReason> skip_reason_of(std::string_view name);
+/// Whether nothing is lost by what is left out for it: repeats, images between those that are used.
+bool is_intended(SkipReason reason);
 
 /// One piece of input that was left out, with a line for people that names file and cause.
 struct SkippedInput {
@@ -65,7 +68,8 @@ struct SourceCounters {
   std::uint64_t depth_alone = 0;                      ///< depth images that no colour image was found for
   std::uint64_t skipped_total() const;
   /// Frames that the source had and did not hand out. Colour images without depth count as far as depth images were
-  /// left over: where depth comes at half the rate of colour, every second colour image is none. Repeats do not count.
+  /// left over: where depth comes at half the rate of colour, every second colour image is none. What is_intended()
+  /// does not count.
   std::uint64_t frames_left_out() const;
   std::uint64_t of(SkipReason reason) const { return skipped[static_cast<std::size_t>(reason)]; }
 };

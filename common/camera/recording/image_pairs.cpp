@@ -9,6 +9,7 @@
 #include "common/camera/calibration.hpp"
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/frame_source.hpp"
+#include "common/camera/recording/emitter_switch.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
 #include "common/camera/recording/recording.hpp"
 #include "common/camera/recording/ros_images.hpp"
@@ -89,6 +90,8 @@ class ImagePairs final : public RecordingSource {
   std::optional<std::int64_t> advance() override;
   std::optional<SourceFrame> decode() override;
   void look_at_first_images(const RecordingOptions& options);
+  void look_for_emitter_switch();
+  bool shows_dots(const RecordedMessage& color);
   /// Whether the driver left all stamps of a topic at 0; then the times of recording take their place.
   bool lacks_stamps(const std::string& topic);
   void load_calibration(const RecordingOptions& options);
@@ -106,6 +109,7 @@ class ImagePairs final : public RecordingSource {
   int grey_bits_ = 16;                 ///< of 16-bit grey
   bool by_time_of_recording_ = false;  ///< frames have it in place of their stamps
   std::optional<vision::DepthRegistration> registration_;
+  std::optional<EmitterSwitch> emitter_;  ///< of infrared in place of colour
   FramePairer pairer_;
   geometry::TransformLog transforms_;
   std::optional<FramePairer::Pair> pair_;  ///< gone to
@@ -156,8 +160,29 @@ void ImagePairs::look_at_first_images(const RecordingOptions& options) {
   const std::optional<double>& requested = options.calibration.depth_factor;
   const auto sdk_unit_m = requested ? std::nullopt : sdk_depth_unit_m(*recording_, topics_.depth);
   info_.depth_scale_m = sdk_unit_m ? *sdk_unit_m : depth_unit_m(depth, float_step_);
+  look_for_emitter_switch();
   floats_ = has_float_depth(depth);
   take_floats_per_metre(requested ? *requested : float_step(depth, info_.depth_scale_m) / info_.depth_scale_m);
+}
+
+void ImagePairs::look_for_emitter_switch() {
+  if (!named_as_infrared(topics_.color)) return;
+  emitter_.emplace();
+  recording_->play({topics_.color});
+  for (int i = 0; i < EmitterSwitch::kTurns + 2 && !emitter_->alternates(); ++i) {
+    const std::optional<RecordedMessage> message = recording_->next();
+    if (!message) return;
+    shows_dots(*message);
+  }
+  if (emitter_->alternates())
+    info_.notes.push_back(topics_.color +
+                          ": the emitter is on in every second image; those with its dots are left out");
+}
+
+bool ImagePairs::shows_dots(const RecordedMessage& color) {
+  if (!emitter_) return false;
+  const ImageRead read = decode_color(color, grey_bits_);
+  return !read.problem && emitter_->shows_dots(read.image);
 }
 
 /// Floats in another unit than ROS's metre.
@@ -268,6 +293,8 @@ void ImagePairs::take(RecordedMessage message) {
       if (is_color) skips_.add({SkipReason::kOtherCamera, std::move(other)});
       return;
     }
+    if (is_color && shows_dots(message))
+      return skips_.add({SkipReason::kEmitterDots, name_of(message) + " shows the dots of the emitter"});
     const std::int64_t stamp_ns = by_time_of_recording_ ? message.recorded_ns : msg::to_ns(header.stamp);
     StampedMessage stamped{stamp_ns, std::move(message)};
     is_color ? pairer_.add_color(std::move(stamped), skips_) : pairer_.add_depth(std::move(stamped));

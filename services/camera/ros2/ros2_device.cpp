@@ -71,7 +71,17 @@ std::optional<DeviceImage> Ros2Device::take_image(RecordedMessage& message) {
   const std::optional<std::int64_t> stamp_ns = stamp_of(message);
   if (!stamp_ns) return std::nullopt;
   if (is_color) note_color(*stamp_ns);
+  if (is_color && shows_dots(message)) {
+    skipped_.push_back({SkipReason::kEmitterDots, name_of(message) + " shows the dots of the emitter"});
+    return std::nullopt;
+  }
   return DeviceImage{is_color ? Stream::kColor : Stream::kDepth, *stamp_ns, std::move(message)};
+}
+
+bool Ros2Device::shows_dots(const RecordedMessage& color) {
+  if (!named_as_infrared(color.topic)) return false;
+  const ImageRead read = decode_color(color, grey_bits_);
+  return !read.problem && emitter_.shows_dots(read.image);
 }
 
 /// In turn with its own: a second camera. Its own no more: the driver was started again with another name.

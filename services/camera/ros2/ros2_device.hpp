@@ -12,6 +12,7 @@
 
 #include "common/camera/depth_alignment.hpp"
 #include "common/camera/live_uri.hpp"
+#include "common/camera/recording/emitter_switch.hpp"
 #include "common/camera/recording/ros_images.hpp"
 #include "common/geometry/transform_log.hpp"
 #include "services/camera/core/live/live_device.hpp"
@@ -71,6 +72,7 @@ class Ros2Device final : public LiveDevice {
   void take_transforms(const RecordedMessage& message);
   void note_color(std::int64_t stamp_ns);
   bool is_of_other_camera(const RecordedMessage& message);
+  bool shows_dots(const RecordedMessage& color);
   /// Empty while the stamps of the driver are 0 and it is not clear that they stay so.
   std::optional<std::int64_t> stamp_of(const RecordedMessage& message);
   void watch_calibration(const msg::CameraInfo& info);
@@ -93,6 +95,7 @@ class Ros2Device final : public LiveDevice {
   double unit_m_ = 0;                     ///< of depth
   double float_step_ = kFloatDepthUnitM;  ///< of depth in floats: what becomes a unit, in the unit of the floats
   int grey_bits_ = 16;                    ///< of 16-bit grey, by the first image
+  EmitterSwitch emitter_;                 ///< of infrared in place of colour
   std::string unregistered_, lacking_;    ///< why depth must be registered, and what that lacks
   geometry::TransformLog lasting_transforms_, transforms_;
   std::optional<DepthCamera> depth_camera_;      ///< when depth is to be registered

@@ -171,9 +171,11 @@ void Collector::close() {
 void Collector::fill(run_record::RunRecord& record) const {
   const std::lock_guard lock(mutex_);
   builder_.fill(record);
-  const auto repeated = record.left_out.find(camera::to_string(camera::SkipReason::kRepeated));
-  const std::uint64_t repeats = repeated == record.left_out.end() ? 0 : static_cast<std::uint64_t>(repeated->second);
-  const std::uint64_t met = record.frames_in + record.frames_left_out + repeats;
+  std::uint64_t met = record.frames_in + record.frames_left_out;
+  for (const auto& [name, count] : record.left_out) {
+    const auto reason = camera::skip_reason_of(name);
+    if (reason && camera::is_intended(*reason)) met += static_cast<std::uint64_t>(count);
+  }
   record.frames_not_played = held_ - std::min(held_, met);
   record.samples = samples_.samples();
   record.judged_frames.clear();

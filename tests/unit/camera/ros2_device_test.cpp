@@ -134,6 +134,30 @@ TEST_F(Ros2DeviceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_dr
   EXPECT_EQ(played.counters().skipped_total(), 0U);
 }
 
+/// Flat, or with dots.
+cv::Mat infrared(bool dots) {
+  cv::Mat grey(24, 32, CV_8UC1, cv::Scalar(90));
+  for (int i = 0; i < 24; ++i) grey.at<std::uint8_t>(i, i) = dots ? 250 : 100;
+  return grey;
+}
+
+TEST_F(Ros2DeviceTest, infrared_with_the_dots_of_an_emitter_that_is_on_in_every_second_image_is_left_out) {
+  add("/infra1/info", "sensor_msgs/CameraInfo", ImageBag::camera_info());
+  for (int i = 0; i < 30; ++i) {
+    add("/infra1/image", "sensor_msgs/Image", ImageBag::image(infrared(i % 2 == 0), "mono8", 1 + i / 30.0));
+    depth(1 + i / 30.0);
+  }
+  DeviceSource played = source("ros2:/infra1/image,/d,/infra1/info?registered=1");
+  ASSERT_TRUE(played.open());
+  std::vector<int> dotted;
+  while (const auto frame = played.next())
+    if (frame->image.color_bgr.at<cv::Vec3b>(3, 3)[0] > 200) dotted.push_back(static_cast<int>(frame->image.seq));
+  EXPECT_LE(dotted.size(), 4U) << "until it is known";
+  EXPECT_TRUE(dotted.empty() || dotted.back() < 8);
+  EXPECT_GE(played.counters().of(SkipReason::kEmitterDots), 10U);
+  EXPECT_EQ(played.counters().frames_left_out(), 0U);
+}
+
 TEST_F(Ros2DeviceTest, colour_without_depth_in_time_is_left_out) {
   begin();
   color(1.1);
