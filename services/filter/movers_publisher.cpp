@@ -74,20 +74,22 @@ msg::Marker new_marker(const WorldMover& mover, const msg::Header& header, const
   return marker;
 }
 
-void add_markers(const WorldMover& mover, const msg::Header& header, std::vector<msg::Marker>& markers) {
+void add_markers(const WorldMover& mover, bool rests, const msg::Header& header, std::vector<msg::Marker>& markers) {
   constexpr double kText_m = 0.15;
   const Eigen::Vector3d middle = mover.extent_world.center(), size_m = mover.extent_world.sizes();
   msg::Marker& box = markers.emplace_back(new_marker(mover, header, "box", kCube));
   box.scale = {size_m.x(), size_m.y(), size_m.z()};
+  msg::Marker& text = markers.emplace_back(new_marker(mover, header, "name", kText));
+  text.text = fmt::format("{} {}", name_of(mover), mover.id);
+  text.scale.z = kText_m;
+  text.color.a = 1;
+  if (rests) return;
+  text.text += fmt::format("  {:.1f} m/s", mover.velocity_world_m_s.norm());
   msg::Marker& arrow = markers.emplace_back(new_marker(mover, header, "velocity", kArrow));
   arrow.pose.position = {};
   arrow.points = {to_point(middle), to_point(middle + mover.velocity_world_m_s)};
   arrow.scale = {0.04, 0.08, 0.1};  // m: shaft, head, length of the head
   arrow.color.a = 1;
-  msg::Marker& text = markers.emplace_back(new_marker(mover, header, "name", kText));
-  text.text = fmt::format("{} {}  {:.1f} m/s", name_of(mover), mover.id, mover.velocity_world_m_s.norm());
-  text.scale.z = kText_m;
-  text.color.a = 1;
 }
 
 }  // namespace
@@ -99,10 +101,10 @@ msg::Detection3DArray make_boxes(const std::vector<WorldMover>& movers, std::int
   return boxes;
 }
 
-msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, std::int64_t stamp_ns,
-                              const std::string& map_frame) {
+msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, const std::vector<bool>& rest,
+                              const msg::Header& header) {
   msg::MarkerArray markers;
-  for (const WorldMover& mover : movers) add_markers(mover, {msg::to_time(stamp_ns), map_frame}, markers.markers);
+  for (std::size_t i = 0; i < movers.size(); ++i) add_markers(movers[i], rest[i], header, markers.markers);
   return markers;
 }
 
@@ -126,18 +128,18 @@ void MoversPublisher::on_result(const msg::TrackingResult& result) {
   if (std::exchange(map_, result.map_id) != result.map_id) movers_.clear();  // another map is `map`: all has moved
   const std::vector<WorldMover> movers =
       movers_.place(frame.stamp_ns, msg::to_isometry(result.T_world_camera), frame.sightings);
-  if (writer_.matched() > 0 && msg::is_measured_in_map(result)) {
-    msg::Movers message{frame.seq, frame.stamp_ns, {}};
-    for (const WorldMover& mover : movers) message.movers.push_back(to_message(mover));
-    writer_.write(message);
-  }
+  msg::Movers message{frame.seq, frame.stamp_ns, {}};
+  for (const WorldMover& mover : movers) message.movers.push_back(to_message(mover));
+  if (writer_.matched() > 0 && msg::is_measured_in_map(result)) writer_.write(message);
   if (boxes_.matched() > 0) boxes_.write(make_boxes(movers, frame.stamp_ns, map_frame_));
-  if (markers_.matched() > 0) markers_.write(make_markers(movers, frame.stamp_ns, map_frame_));
+  if (markers_.matched() > 0)
+    markers_.write(make_markers(movers, trails_.rest(message), {msg::to_time(frame.stamp_ns), map_frame_}));
 }
 
 void MoversPublisher::clear() {
   waiting_.clear();
   movers_.clear();
+  trails_ = {};
 }
 
 }  // namespace rtd::filter

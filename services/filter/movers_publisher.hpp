@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/bus/bus.hpp"
+#include "common/geometry/mover_trails.hpp"
 #include "services/filter/core/dynamic_filter.hpp"
 
 namespace rtd::filter {
@@ -16,10 +17,10 @@ namespace rtd::filter {
 /// covariance of its middle. The score fades while an object is hidden.
 msg::Detection3DArray make_boxes(const std::vector<WorldMover>& movers, std::int64_t stamp_ns,
                                  const std::string& map_frame);
-/// The same for people who watch: box, arrow to where it is a second later, and text of each. They vanish by
-/// themselves.
-msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, std::int64_t stamp_ns,
-                              const std::string& map_frame);
+/// The same for people who watch: box and name of each, and of those that do not rest their speed and an arrow to where
+/// they are a second later. They vanish by themselves.
+msg::MarkerArray make_markers(const std::vector<WorldMover>& movers, const std::vector<bool>& rest,
+                              const msg::Header& header);
 
 /// Publishes where the objects of each frame are, once slam has said where the camera was: one frame later.
 /// `rtd/movers` says most; `rt/filter/movers` and `rt/filter/movers_markers` are for programs of ROS 2. Frames that
@@ -51,6 +52,7 @@ class MoversPublisher {
   std::string map_frame_;
   std::deque<Waiting> waiting_;  ///< by seq
   WorldMovers movers_;
+  geometry::MoverTrails trails_;  ///< of the markers
   std::uint32_t map_ = 0;  ///< that the last tracked frame was in
 };
 

@@ -96,8 +96,7 @@ void RobotFeed::set_options(const PageOptions& wanted) {
   options_ = wanted;
   using namespace bus::topics;
   read(map_, kMap, wanted.points, [](RobotMirror& to, const msg::MapUpdate& update) { to.map().add(update); });
-  read(movers_, kMovers, true,
-       [](RobotMirror& to, const msg::Movers& movers) { to.set(Item::kMovers, page::movers(to.index(), movers)); });
+  read(movers_, kMovers, true, [](RobotMirror& to, const msg::Movers& movers) { to.add(movers); });
   read(truth_, kGroundTruth, true, [](RobotMirror& to, const msg::PoseStamped& pose) {
     const msg::Point& position = pose.pose.position;
     to.add_truth(to_ns(pose.header.stamp), {position.x, position.y, position.z});

@@ -83,7 +83,8 @@ Bytes dense(Kind kind, std::uint8_t robot, std::uint32_t start, std::uint32_t to
 std::string tracking(std::uint8_t robot, const msg::TrackingResult& result, double finished_ms,
                      const std::optional<std::array<float, msg::kFilterStages>>& filter_stage_ms);
 std::string boxes(std::uint8_t robot, const msg::Detection2DArray& detections);
-std::string movers(std::uint8_t robot, const msg::Movers& movers);
+/// `rest`: which of them may rest (geometry::MoverTrails).
+std::string movers(std::uint8_t robot, const msg::Movers& movers, const std::vector<bool>& rest);
 /// What is being replayed, s.
 struct Playback {
   double position_s = 0, length_s = 0, speed = 1;

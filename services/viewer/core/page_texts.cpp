@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/Dense>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -30,14 +29,6 @@ json stages(const char* const (&names)[kNames], const std::array<float, kStages>
   for (std::size_t place = 0; place < kNames; ++place)
     if (stage_ms[place] > 0) result[names[place]] = rounded(static_cast<double>(stage_ms[place]), 1e2);
   return result;
-}
-
-/// The measured velocity is within what its covariance makes likely for an object at rest.
-bool rests(const msg::Mover& mover) {
-  constexpr double kLikely = 11.34;  // 99 % of chi-square with 3 degrees of freedom
-  const Eigen::Map<const Eigen::Vector3d> velocity_mps(mover.velocity_mps.data());
-  const Eigen::Map<const Eigen::Matrix<double, 6, 6>> covariance(mover.covariance.data());
-  return !(velocity_mps.dot(covariance.bottomRightCorner<3, 3>().ldlt().solve(velocity_mps)) > kLikely);
 }
 
 json pose(const msg::Transform& transform) {
@@ -108,21 +99,23 @@ std::string boxes(std::uint8_t robot, const msg::Detection2DArray& detections) {
                     {"boxes", std::move(list)}});
 }
 
-std::string movers(std::uint8_t robot, const msg::Movers& movers) {
+std::string movers(std::uint8_t robot, const msg::Movers& movers, const std::vector<bool>& rest) {
   const auto rounded_all = [](const std::array<double, 3>& values) {
     json list = json::array();
     for (const double value : values) list.push_back(rounded(value, 1e3));
     return list;
   };
   json list = json::array();
-  for (const msg::Mover& mover : movers.movers)
+  for (std::size_t i = 0; i < movers.movers.size(); ++i) {
+    const msg::Mover& mover = movers.movers[i];
     list.push_back({{"id", mover.id},
                     {"label", mover.class_name},
                     {"center", rounded_all(mover.center_m)},
                     {"size", rounded_all(mover.size_m)},
                     {"velocity", rounded_all(mover.velocity_mps)},
-                    {"rests", rests(mover)},
+                    {"rests", static_cast<bool>(rest[i])},
                     {"static_probability", rounded(static_cast<double>(mover.static_probability), 1e2)}});
+  }
   return json_line({{"type", "movers"},
                     {"robot", robot},
                     {"stamp_s", 1e-9 * static_cast<double>(movers.stamp_ns)},

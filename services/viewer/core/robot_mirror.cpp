@@ -211,6 +211,10 @@ void RobotMirror::add(const msg::OccupancyGrid& plan) {
   if (!bytes.empty()) plan_ = {plan_.revision + 1, shared(std::move(bytes))};
 }
 
+void RobotMirror::add(const msg::Movers& movers) {
+  set(Item::kMovers, page::movers(index_, movers, trails_.rest(movers)));
+}
+
 void RobotMirror::add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m) {
   truth_.add_truth(stamp_ns, position_m);
 }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/mover_trails.hpp"
 #include "common/msg/features.hpp"
 #include "common/msg/ros.hpp"
 #include "common/msg/status.hpp"
@@ -97,6 +98,7 @@ class RobotMirror {
   void add(const msg::ServiceStatus& status, std::int64_t received_ns);
   void add(CloudKind kind, const msg::PointCloud2& cloud);
   void add(const msg::OccupancyGrid& plan);
+  void add(const msg::Movers& movers);
   void add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
   void set_commands(const std::vector<CommandInfo>& commands);
   /// Any other item, as JSON without "robot".
@@ -149,6 +151,7 @@ class RobotMirror {
 
   const std::uint8_t index_;
   MapMirror map_;
+  geometry::MoverTrails trails_;
   std::array<Message, kItems> items_;
   std::deque<Message> recent_tracking_;
   double recent_ms_ = 0;  ///< when the newest of them was ready

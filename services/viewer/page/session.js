@@ -5,7 +5,6 @@
 
 import { EventLog } from "./event_log.js";
 import { History } from "./history.js";
-import { Trails } from "./movers.js";
 import { MapState } from "./world.js";
 import { Series } from "./series.js";
 
@@ -30,7 +29,6 @@ export class RobotState {
     this.services = [];
     this.deaths = new Map();  // how often each service was restarted without having ended
     this.movers = [];
-    this.trails = new Trails();
     this.commands = [];
     this.playback = null;
     this.truthError = null;
@@ -167,7 +165,7 @@ export class Session {
       case "tracking": robot().setTracking(message, this.#readyAt_ms(message, now_ms)); break;
       case "status": robot().setServices(message.services); break;
       case "boxes": robot().overlays.boxes = message; break;
-      case "movers": robot().movers = robot().trails.add(message); break;
+      case "movers": robot().movers = message.movers; break;
       case "commands": robot().commands = message.commands; break;
       case "playback": robot().playback = message; break;
       case "truth_error": robot().truthError = message; break;

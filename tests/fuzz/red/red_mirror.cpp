@@ -147,8 +147,7 @@ class Attack {
     give<msg::KeyframeEvent>("keyframe event", hostile, [&](const auto& event) { mirror_->map().add(event); });
     give<msg::ServiceStatus>("status", hostile, [&](const auto& status) { mirror_->add(status, now_ns_); });
     give<msg::MapUpdate>("map", hostile, [&](const auto& update) { mirror_->map().add(update); });
-    give<msg::Movers>("movers", hostile,
-                      [&](const auto& movers) { mirror_->set(Item::kMovers, page::movers(0, movers)); });
+    give<msg::Movers>("movers", hostile, [&](const auto& movers) { mirror_->add(movers); });
     give<msg::PoseStamped>("truth", hostile, [&](const auto& pose) {
       const msg::Point& at = pose.pose.position;
       mirror_->add_truth(to_ns(pose.header.stamp), {at.x, at.y, at.z});

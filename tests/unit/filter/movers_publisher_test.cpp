@@ -55,13 +55,15 @@ TEST(MoverBoxes, of_what_has_no_class_are_unknown) {
   EXPECT_TRUE(make_boxes({}, kStampNs, "map").detections.empty());
 }
 
-TEST(MoverMarkers, are_a_box_an_arrow_and_a_name_each) {
+const msg::Header kHeader{msg::to_time(kStampNs), "map"};
+
+TEST(MoverMarkers, are_a_box_a_name_and_an_arrow_each) {
   WorldMover hidden = walker();
   hidden.id = 8;
   hidden.unseen_s = 0.4;
-  const msg::MarkerArray markers = make_markers({walker(), hidden}, kStampNs, "map");
+  const msg::MarkerArray markers = make_markers({walker(), hidden}, {false, false}, kHeader);
   ASSERT_EQ(markers.markers.size(), 6U);
-  const msg::Marker &box = markers.markers[0], &arrow = markers.markers[1], &name = markers.markers[2];
+  const msg::Marker &box = markers.markers[0], &name = markers.markers[1], &arrow = markers.markers[2];
   EXPECT_EQ(box.type, 1) << "CUBE";
   EXPECT_EQ(box.header.frame_id, "map");
   EXPECT_EQ(box.id, 7);
@@ -76,6 +78,12 @@ TEST(MoverMarkers, are_a_box_an_arrow_and_a_name_each) {
   EXPECT_EQ(name.text, "person 7  1.1 m/s");
   EXPECT_LT(markers.markers[3].color.a, box.color.a) << "a hidden one is pale";
   for (const msg::Marker& marker : markers.markers) EXPECT_GT(marker.lifetime.nanosec, 0U) << "vanishes by itself";
+}
+
+TEST(MoverMarkers, of_what_rests_have_neither_arrow_nor_speed) {
+  const msg::MarkerArray markers = make_markers({walker()}, {true}, kHeader);
+  ASSERT_EQ(markers.markers.size(), 2U);
+  EXPECT_EQ(markers.markers[1].text, "person 7");
 }
 
 TEST(MoversPublisher, follows_the_camera_into_another_map) {

@@ -87,7 +87,7 @@ std::string texts() {
   std::string all;
   for (const std::string& text :
        {page::tracking(1, sample<msg::TrackingResult>(5), 3.5, std::array<float, msg::kFilterStages>{1, 2}),
-        page::boxes(1, sample<msg::Detection2DArray>(6)), page::movers(1, sample<msg::Movers>(7)),
+        page::boxes(1, sample<msg::Detection2DArray>(6)), page::movers(1, sample<msg::Movers>(7), std::vector<bool>(9)),
         page::playback(1, {.position_s = 1, .length_s = 2}), page::services(1, std::span(&line, 1)),
         page::commands(1, std::span(&command, 1)), page::truth_error(1, 0.25, 10), page::map_reset(1),
         page::robots(robots), page::answer(5, {true, "done"})})
