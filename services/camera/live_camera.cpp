@@ -69,7 +69,7 @@ class Ros2Feed final : public LiveFeed {
   /// Throws BusError when the bus refuses.
   Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics);
 
-  std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override { return queue_.pop_for(timeout); }
+  std::optional<RecordedMessage> next(std::chrono::milliseconds timeout) override;
   void clear() override;
   void end_transforms() override { wants_transforms_ = false; }
   std::uint64_t dropped() const override { return queue_.dropped(); }
@@ -83,6 +83,8 @@ class Ros2Feed final : public LiveFeed {
     int readable = 0;
     std::string other_type;  ///< of one that cannot be read
   };
+  void connect();
+  bool needs_udp() const;
   Publishers publishers(const std::string& topic) const;
   bool can_read(const bus::TopicWriter& writer) const;
   bus::RawHandlers handlers(const bus::RawTopic& topic);
@@ -92,11 +94,13 @@ class Ros2Feed final : public LiveFeed {
   FirstPublisher color_publisher_, depth_publisher_;
   concurrency::BoundedQueue<RecordedMessage> queue_;
   std::shared_ptr<bus::RawBus> bus_;
+  bool in_shared_memory_ = true;  ///< no program of another user was there when it was connected
+  std::int64_t silent_since_ns_ = 0;
   std::atomic<bool> wants_transforms_{true};
   const std::string color_topic_, depth_topic_;
   /// By the ROS names of the topics that are read: the types that can be read, plain_type().
   const std::map<std::string, std::set<std::string>> types_;
-  bus::TopicFollower follower_;
+  std::optional<bus::TopicFollower> follower_;
 };
 
 constexpr std::size_t kQueue = 32;                 // messages of four topics: a quarter of a second
@@ -121,12 +125,23 @@ std::string plain_dds_type(const bus::RawTopic& topic) {
 Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
     : options_(options),
       queue_(kQueue, concurrency::Overflow::kDropOldest),
-      bus_(bus::connect_raw(options)),
       color_topic_(topics.color),
       depth_topic_(topics.depth),
-      types_{{topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
-             {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}},
-      follower_(*bus_, {.wants = [this](const bus::TopicWriter& writer) { return can_read(writer); },
+      types_{
+          {topics.color, {kImage, kCompressed}}, {topics.depth, {kImage, kCompressed}}, {topics.info, {kInfo}},
+          {topics.depth_info, {kInfo}},          {kLastingTransforms, {kTransform}},    {kTransforms, {kTransform}}} {
+  connect();
+}
+
+void Ros2Feed::connect() {
+  in_shared_memory_ = bus::why_not_shared_memory(options_, bus::read_host_limits()).empty();
+  std::shared_ptr<bus::RawBus> bus = bus::connect_raw(options_);
+  follower_.reset();
+  bus_ = std::move(bus);
+  silent_since_ns_ = now_ns();
+  follower_.emplace(*bus_,
+                    bus::TopicFollower::Options{
+                        .wants = [this](const bus::TopicWriter& writer) { return can_read(writer); },
                         .handlers = [this](const bus::RawTopic& topic) { return handlers(topic); },
                         .on_read =
                             [](const bus::TopicWriter& writer, const bus::RawReaderOptions& reader) {
@@ -139,7 +154,30 @@ Ros2Feed::Ros2Feed(const bus::BusOptions& options, const LiveTopics& topics)
                               SPDLOG_WARN("event=topic_refused topic={} cause=\"{}\"",
                                           ros2::ros_topic(writer.topic.name), error.what());
                             },
-                        .reader = {.transient_local = true, .depth = kReaderDepth, .largest_sample = kLargestImage}}) {}
+                        .reader = {.transient_local = true, .depth = kReaderDepth, .largest_sample = kLargestImage}});
+}
+
+/// Waits as LiveFeed says, and comes back over UDP where a driver of another user started later than this camera.
+std::optional<RecordedMessage> Ros2Feed::next(std::chrono::milliseconds timeout) {
+  std::optional<RecordedMessage> message = queue_.pop_for(timeout);
+  if (message) {
+    silent_since_ns_ = now_ns();
+  } else if (needs_udp()) {
+    SPDLOG_WARN("event=camera_over_udp cause=\"{}\"", bus::why_not_shared_memory(options_, bus::read_host_limits()));
+    try {
+      connect();
+    } catch (const bus::BusError& error) {
+      SPDLOG_WARN("event=not_connected_again cause=\"{}\"", error.what());
+    }
+  }
+  return message;
+}
+
+bool Ros2Feed::needs_udp() const {
+  constexpr std::int64_t kSilentNs = 2'000'000'000;
+  return in_shared_memory_ && now_ns() - silent_since_ns_ > kSilentNs && is_published(color_topic_) &&
+         !bus::why_not_shared_memory(options_, bus::read_host_limits()).empty();
+}
 
 void Ros2Feed::clear() {
   while (queue_.pop_for(std::chrono::milliseconds(0))) {
