@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// Prints what a page of the evaluation shows: node render.mjs PAGE.html [WIDTH]. A document of a few lines takes the place of a
-// browser: it knows only what the page's script uses, and markup in a text stays text, as in a browser.
+// Prints what a page of the evaluation shows: node render.mjs PAGE.html [WIDTH [WIDTH WHEN TURNED]]. A document of a few
+// lines takes the place of a browser: it knows only what the page's script uses, and markup in a text stays text, as in a browser.
 
 import { readFileSync } from "node:fs";
 import vm from "node:vm";
@@ -28,5 +28,12 @@ const document = {
   createElement: (name) => new Element(name),
   createElementNS: (space, name) => new Element(name),
 };
-vm.runInNewContext(script, { document, atob, URL, innerWidth: Number(process.argv[3] ?? 1280), location: new URL("file:///a run/report.html") });
+let turned = () => {};
+const window = { document, atob, URL, innerWidth: Number(process.argv[3] ?? 1280), location: new URL("file:///a run/report.html"),
+                 requestAnimationFrame: (draw) => draw(), addEventListener: (event, handler) => { turned = handler; } };
+vm.runInNewContext(script, window);
+if (process.argv[4]) {
+  window.innerWidth = Number(process.argv[4]);
+  turned();
+}
 process.stdout.write(`<title>${escaped(document.title)}</title>${main}`);

@@ -13,10 +13,11 @@ bool has_node() {
   return ::rtd::testing::run_command("node --version").exit_code == 0;
 }
 
-std::string rendered(const std::string& html, const std::string& scratch_file, int width_px) {
+std::string rendered(const std::string& html, const std::string& scratch_file, int width_px, int turned_px) {
   io::write_file(scratch_file, html);
-  const auto result = ::rtd::testing::run_command("timeout 60 node " RTD_RENDER_PAGE " " + scratch_file + " " +
-                                                  std::to_string(width_px));
+  const auto result =
+      ::rtd::testing::run_command("timeout 60 node " RTD_RENDER_PAGE " " + scratch_file + " " +
+                                  std::to_string(width_px) + (turned_px == 0 ? "" : " " + std::to_string(turned_px)));
   EXPECT_EQ(result.exit_code, 0) << result.output;
   return result.output;
 }

@@ -256,6 +256,19 @@ TEST_F(ShownReport, draws_for_a_phone_what_fits_its_width) {
   EXPECT_EQ(with_two_rows, 1U) << "the legend of the features";
 }
 
+TEST_F(ShownReport, is_drawn_again_when_the_phone_is_turned) {
+  const std::string file = folder_.file("page.html"), upright = testing_support::rendered(page(), file, 390);
+  EXPECT_NE(testing_support::rendered(page(), file, 844), upright);
+  EXPECT_EQ(testing_support::rendered(page(), file, 844, 390), upright);
+}
+
+TEST_F(ShownReport, comparison_has_a_row_for_each_figure_on_a_phone) {
+  const std::string runs = comparison_html({{"filter off", record_}, {"filter rtd", record_}});
+  const std::string html = testing_support::rendered(runs, folder_.file("page.html"), 390);
+  EXPECT_THAT(html, HasSubstr("<tr><th>run</th><th>filter off</th><th>filter rtd</th></tr>"));
+  EXPECT_THAT(html, HasSubstr("<tr><td>frames with pose</td><td>94.00 %</td><td>94.00 %</td></tr>"));
+}
+
 TEST_F(ShownReport, lists_no_drops_that_did_not_happen) {
   record_.drops["filter.dropped"] = 0;
   EXPECT_THAT(shown(), AllOf(HasSubstr("camera.late: 1"), Not(HasSubstr("filter.dropped"))));
