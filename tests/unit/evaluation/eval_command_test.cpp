@@ -75,6 +75,23 @@ TEST_F(EvalCommand, reads_kitti_with_a_rate_and_pairs_by_number_without) {
   EXPECT_THAT(needless.err, HasSubstr("both files have stamps"));
 }
 
+/// Motion capture has the markers on a camera: here the input of the field that shows it.
+TEST_F(EvalCommand, says_that_a_ground_truth_is_of_another_body_and_compares_the_motion_of_the_camera) {
+  const Eigen::Isometry3d T_markers_camera =
+      Eigen::Translation3d(0.03, -0.05, 0.1) * Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, 2, -1).normalized());
+  const Trajectory markers = winding_path(200, 0.1);
+  Trajectory camera = markers;
+  for (StampedPose& pose : camera) pose.T_world_body = pose.T_world_body * T_markers_camera;
+  const std::string truth = folder_.write("markers.txt", tum_text(markers));
+  const std::string estimate = folder_.write("camera.txt", tum_text(moved(camera, some_transform())));
+  const Outcome outcome = run({estimate, truth});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("the ground truth is of another body"), HasSubstr("120.3 degrees")));
+  const auto json = nlohmann::json::parse(run({estimate, truth, "--json"}).out);
+  EXPECT_LT(json["rpe"]["per_second"]["rotation_deg"]["rmse"].get<double>(), 0.01) << "of the camera";
+  EXPECT_THAT(run({truth, truth}).err, Not(HasSubstr("another body")));
+}
+
 TEST_F(EvalCommand, two_poses_have_no_error_of_a_trajectory) {
   const std::string two = folder_.write("two.txt", tum_text(winding_path(2, 0.1)));
   const Outcome outcome = run({two, truth_});
