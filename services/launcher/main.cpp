@@ -207,6 +207,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
   command->add_option("--out", options.out_dir, "Folder for trajectory, map, logs and report")->required();
   command->add_option("--record", options.record,
                       "Also record all topics: FILE.mcap, or a folder in the layout of rosbag2");
+  command->add_flag("--blur-people", options.blur_people, "With --record: people in recorded images are pixelated");
   command->add_flag("--viewer", options.viewer,
                     "Also show the run in the browser, until Ctrl-C; a recording waits for the first page. "
                     "--viewer=now does not wait, --viewer=exit ends with the run (--set viewer.port=...)");

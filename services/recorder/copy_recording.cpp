@@ -11,6 +11,7 @@
 #include "common/io/byte_sink.hpp"
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/writer.hpp"
+#include "common/recordings/reader.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros2/ros1_to_cdr.hpp"
 #include "common/ros2/type_description.hpp"
@@ -24,7 +25,16 @@ constexpr std::size_t kMaxDamages = 100;
 struct Output {
   mcap::ChannelId id = 0;
   std::optional<ros2::Ros1ToCdr> to_cdr;  ///< empty: as they are
+  recorder::BlurTopic topic;
 };
+
+ros::Bytes bytes_of(std::span<const std::byte> data) {
+  return {reinterpret_cast<const std::uint8_t*>(data.data()), data.size()};
+}
+
+recorder::BlurTopic blur_topic(const mcap::Channel& channel, const std::string& type) {
+  return {ros2::dds_topic(channel.topic), plain_type(type)};
+}
 
 /// ROS 1's older name of what ROS 2 calls tf2_msgs/msg/TFMessage.
 std::string ros2_name(const std::string& type) {
@@ -37,8 +47,12 @@ std::string ros2_name(const std::string& type) {
 
 class Copy {
  public:
-  Copy(const io::ByteSource& source, io::ByteSink& sink, mcap::Compression compression, CopiedRecording& result)
-      : reader_(source), writer_(sink, {.profile = "ros2", .compression = compression}), result_(result) {}
+  Copy(const io::ByteSource& source, io::ByteSink& sink, mcap::Compression compression, recorder::PeopleBlur* people,
+       CopiedRecording& result)
+      : reader_(source),
+        writer_(sink, {.profile = "ros2", .compression = compression}),
+        people_(people),
+        result_(result) {}
 
   void run(const std::function<void(std::uint64_t)>& progress) {
     mcap::MessageCursor cursor = reader_.messages();
@@ -61,10 +75,14 @@ class Copy {
       copy.channel_id = output.id;
       std::vector<std::uint8_t> cdr;
       if (output.to_cdr) {
-        cdr = (*output.to_cdr)({reinterpret_cast<const std::uint8_t*>(message.data.data()), message.data.size()});
+        cdr = (*output.to_cdr)(bytes_of(message.data));
         copy.data = std::as_bytes(std::span(cdr));
         ++result_.from_ros1;
       }
+      const recorder::PeopleBlur::Result blurred =
+          people_ == nullptr ? recorder::PeopleBlur::Result{} : people_->apply(output.topic, bytes_of(copy.data));
+      if (blurred.fate == recorder::Fate::kWithheld) return;
+      if (blurred.fate != recorder::Fate::kKept) copy.data = std::as_bytes(std::span(blurred.cdr));
       writer_.write(copy);
       ++result_.messages;
       topics_.insert(topic);
@@ -93,7 +111,7 @@ class Copy {
         describe(schema);
       }
       copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : id_of(schema);
-      return Output{writer_.add(std::move(copy)), std::move(to_cdr)};
+      return Output{writer_.add(std::move(copy)), std::move(to_cdr), blur_topic(channel, schema.name)};
     } catch (const ros::DefinitionError& error) {
       result_.left_out[channel.topic] = error.what();
       return std::nullopt;
@@ -130,6 +148,7 @@ class Copy {
 
   mcap::IndexedReader reader_;
   mcap::Writer writer_;
+  recorder::PeopleBlur* const people_;
   CopiedRecording& result_;
   std::map<mcap::ChannelId, std::optional<Output>> outputs_;
   std::map<std::tuple<std::string, std::string, std::string>, mcap::SchemaId> schemas_;
@@ -140,13 +159,26 @@ class Copy {
 }  // namespace
 
 CopiedRecording copy_recording(const Opened& source, const std::filesystem::path& file, mcap::Compression compression,
-                               const std::function<void(std::uint64_t)>& progress) {
+                               recorder::PeopleBlur* people, const std::function<void(std::uint64_t)>& progress) {
   io::AtomicFile sink(file, {.named_by = io::NamedBy::kOperator, .if_exists = io::IfExists::kFail});
   CopiedRecording result;
   result.damages = source.damages;
-  Copy(*source.source, sink, compression, result).run(progress);
+  Copy(*source.source, sink, compression, people, result).run(progress);
+  if (people != nullptr) result.people = people->counts();
   sink.commit();
   return result;
+}
+
+recorder::PeopleBlur people_in(const Opened& source) {
+  recorder::PeopleBlur people;
+  mcap::IndexedReader reader(*source.source);
+  mcap::MessageCursor cursor = reader.messages();
+  while (const mcap::Message* const message = cursor.next()) {
+    const auto schema = reader.summary().schemas.find(cursor.channel().schema_id);
+    if (schema == reader.summary().schemas.end() || cursor.channel().message_encoding != "cdr") continue;
+    people.learn(blur_topic(cursor.channel(), schema->second.name), bytes_of(message->data));
+  }
+  return people;
 }
 
 }  // namespace rtd::recordings

@@ -89,7 +89,8 @@ struct RecordingReport {
   TopicCounts totals;  ///< of the topics
   std::uint64_t acknowledged_bytes = 0;
   double duration_s = 0;
-  std::string failure;  ///< why it ended early; empty: it was stopped
+  std::string failure;                          ///< why it ended early; empty: it was stopped
+  std::map<std::string, std::uint64_t> people;  ///< images by what became of them; empty: all are as they were
   bool partial() const { return !failure.empty() || totals.lost() > 0; }
 };
 
@@ -122,6 +123,7 @@ std::string report_json(const RecordingReport& report) {
                                            {"lost", report.totals.lost()},
                                            {"bytes", bytes},
                                            {"files", files},
+                                           {"people", report.people},
                                            {"topics", topics}});
 }
 
@@ -136,6 +138,22 @@ mcap::Metadata loss_metadata(const std::vector<RecordedTopic>& topics) {
         fmt::format("in_transit={} in_queue={}", topic.counts.lost_in_transit, topic.counts.lost_in_queue);
   }
   record.metadata["total"] = std::to_string(total);
+  return record;
+}
+
+void log_people(const std::map<std::string, std::uint64_t>& people) {
+  SPDLOG_INFO("event=people_blurred images={} hidden={} withheld={}", people.at("blurred"), people.at("hidden"),
+              people.at("withheld"));
+  if (people.at("hidden") == 0) return;
+  SPDLOG_WARN(
+      "event=images_hidden images={} cause=\"no detections for them\" fix=\"record while the detector runs; "
+      "it sees every image with --pace asap or lockstep\"",
+      people.at("hidden"));
+}
+
+mcap::Metadata people_metadata(const PeopleBlur& people) {
+  mcap::Metadata record{"rtd:people", {}};
+  for (const auto& [fate, messages] : people.counts()) record.metadata[fate] = std::to_string(messages);
   return record;
 }
 
@@ -157,6 +175,7 @@ RecordingSession::RecordingSession(const ServiceConfig& config, service::Runtime
       queue_(static_cast<std::uint64_t>(config.queue_mib) * kMib),
       interactive_(isatty(STDERR_FILENO) == 1) {
   prepare(files_, config_.force);
+  if (config_.blur_people) blur_line_.emplace(book_);
   const auto open = [this](std::size_t number) { return open_sink(number); };
   sync_.emplace(std::chrono::milliseconds(config_.sync_pause_ms));
   try {
@@ -188,9 +207,21 @@ bool RecordingSession::turn() {
   return failure_.empty();
 }
 
+void RecordingSession::write_queued(bool ended) {
+  while (auto message = queue_.pop()) {
+    const std::int64_t now_ns = service::monotonic_ns();
+    blur_line_ ? blur_line_->push(std::move(*message), now_ns) : recording_->write(*message, now_ns);
+  }
+  while (blur_line_) {
+    const auto message = blur_line_->pop(service::monotonic_ns(), ended);
+    if (!message) return;
+    recording_->write(*message, service::monotonic_ns());
+  }
+}
+
 void RecordingSession::write_messages() {
   queue_.wait_for(kPatience);
-  while (const auto message = queue_.pop()) recording_->write(*message, service::monotonic_ns());
+  write_queued(false);
   const std::int64_t now_ns = service::monotonic_ns();
   recording_->tick(now_ns);
   readers_->tick(now_ns);
@@ -213,9 +244,10 @@ service::ExitCode RecordingSession::finish() {
 
 void RecordingSession::write_rest() {
   queue_.close();
-  const std::int64_t now_ns = service::monotonic_ns();
-  while (const auto message = queue_.pop()) recording_->write(*message, now_ns);
-  recording_->finish({loss_metadata(book_.topics())});
+  write_queued(true);
+  std::vector<mcap::Metadata> metadata{loss_metadata(book_.topics())};
+  if (blur_line_) metadata.push_back(people_metadata(blur_line_->people()));
+  recording_->finish(metadata);
 }
 
 std::string RecordingSession::path() const {
@@ -323,6 +355,7 @@ service::ExitCode RecordingSession::conclude() {
   report.acknowledged_bytes = acknowledged.bytes;
   report.duration_s = static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9;
   report.failure = failure_;
+  if (blur_line_) report.people = blur_line_->people().counts();
   for (std::size_t i = 0; i < report.files.size(); ++i) report.names.push_back(files_.file(i).filename());
   write_metadata(bag_metadata_text(report.names, report.files, report.topics));
   if (interactive_) io::rewrite_terminal_line("");
@@ -330,6 +363,7 @@ service::ExitCode RecordingSession::conclude() {
     SPDLOG_INFO("event=topic topic={} messages={} lost_in_transit={} lost_in_queue={}", topic.name,
                 topic.counts.written, topic.counts.lost_in_transit, topic.counts.lost_in_queue);
   }
+  if (blur_line_) log_people(report.people);
   if (!failure_.empty()) SPDLOG_ERROR("event=ended_early cause=\"{}\"", failure_);
   SPDLOG_INFO("event=summary files={} messages={} acknowledged={} bytes={} lost={}", report.files.size(),
               report.totals.written, report.totals.acknowledged, recording_->bytes(), report.totals.lost());

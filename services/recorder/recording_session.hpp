@@ -11,6 +11,7 @@
 #include "common/service/runtime.hpp"
 #include "services/recorder/core/output_files.hpp"
 #include "services/recorder/core/recording.hpp"
+#include "services/recorder/people/blur_line.hpp"
 #include "services/recorder/topic_readers.hpp"
 
 namespace rtd::recorder {
@@ -24,6 +25,7 @@ struct ServiceConfig {
   std::string compression = "none";
   bool force = false;
   bool beside = false;
+  bool blur_people = false;
   bool json = false;
   bool wait = false;
   int queue_mib = 256;
@@ -51,6 +53,10 @@ struct ServiceConfig {
     binder.field("force", force, "replace an earlier recording").option("--force");
     binder.field("beside", beside, "keep an earlier recording and take the next free name: run.1.mcap")
         .option("--beside");
+    binder
+        .field("blur_people", blur_people,
+               "pixelate people in images, by the detector's boxes; images without detections as a whole")
+        .option("--blur-people");
     binder.field("json", json, "print the final report as JSON on stdout").option("--json");
     binder.field("wait", wait, "record nothing until the command recorder/start (rtd call)").option("--wait");
     binder.field("queue_mib", queue_mib, {1, 65536},
@@ -89,6 +95,8 @@ class RecordingSession {
 
  private:
   std::shared_ptr<io::ByteSink> open_sink(std::size_t number) const;
+  /// Writes what has come and need not wait. `ended`: nothing more comes.
+  void write_queued(bool ended);
   void write_messages();
   void write_rest();
   void report_state(std::int64_t now_ns);
@@ -106,6 +114,7 @@ class RecordingSession {
   MessageQueue queue_;
   std::optional<SyncThread> sync_;
   std::optional<Recording> recording_;
+  std::optional<BlurLine> blur_line_;
   std::optional<TopicReaders> readers_;
   std::int64_t started_ns_ = 0, reported_ns_ = 0, progress_ns_ = 0;
   std::uint64_t progress_bytes_ = 0, free_bytes_ = 0;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
@@ -27,6 +28,7 @@ struct ConvertOptions {
   std::string source, destination;
   std::string compression = "zstd";  ///< of an MCAP file: none, lz4 or zstd
   std::uint64_t frames = 0;          ///< at most so many, 0 = all
+  bool blur_people = false;
   bool json = false;
 };
 
@@ -76,6 +78,22 @@ bool copies_recording(const ConvertOptions& options, const std::string& uri) {
          parse_destination(options.destination).format == Format::kMcap;
 }
 
+/// Throws SourceError where nothing says where people are.
+recorder::PeopleBlur people_of(const Opened& source, const ConvertOptions& options) {
+  recorder::PeopleBlur people = people_in(source);
+  if (people.knows_people()) return people;
+  throw SourceError("--blur-people: " + options.source +
+                    " has no detections (/detector/detections): it is unknown where people are in its images; "
+                    "make a recording with them: rtd run --source " +
+                    options.source + " --out DIR --record NEW.mcap --blur-people");
+}
+
+void print(const std::map<std::string, std::uint64_t>& people, std::ostream& out) {
+  out << "people are pixelated in " << people.at("blurred") << " images; " << people.at("hidden")
+      << " without detections are pixelated as a whole, " << people.at("withheld")
+      << " messages that may show people and cannot be read are left out\n";
+}
+
 service::ExitCode copy(const ConvertOptions& options, const std::string& path, std::ostream& out, std::ostream& err) {
   const Destination destination = parse_destination(options.destination);
   const auto compression = mcap::compression_of(options.compression == "none" ? "" : options.compression);
@@ -83,9 +101,12 @@ service::ExitCode copy(const ConvertOptions& options, const std::string& path, s
     throw SourceError(destination.path + " exists; name a new file or remove it");
   service::Progress opening(err, "opening", size_of(path));
   const Opened source = open(path, [&](std::uint64_t bytes) { opening.reach(bytes); });
+  std::optional<recorder::PeopleBlur> people;
+  if (options.blur_people) people = people_of(source, options);
   service::Progress progress(err, "bytes", source.source->size());
-  const CopiedRecording copied = copy_recording(source, destination.path, compression.value(),
-                                                [&](std::uint64_t bytes) { progress.reach(bytes); });
+  const CopiedRecording copied =
+      copy_recording(source, destination.path, compression.value(), people ? &*people : nullptr,
+                     [&](std::uint64_t bytes) { progress.reach(bytes); });
   for (const std::string& damage : copied.damages) err << "rtd convert: " << damage << '\n';
   if (options.json) {
     out << service::json_text(nlohmann::json{{"source", options.source},
@@ -94,12 +115,14 @@ service::ExitCode copy(const ConvertOptions& options, const std::string& path, s
                                              {"topics", copied.topics},
                                              {"from_ros1", copied.from_ros1},
                                              {"left_out", copied.left_out},
+                                             {"people", copied.people},
                                              {"damages", copied.damages}})
         << '\n';
   } else {
     out << copied.messages << " messages of " << copied.topics << " topics written to " << options.destination;
     if (copied.from_ros1 > 0) out << ", " << copied.from_ros1 << " of them turned from ROS 1 into CDR";
     out << '\n';
+    if (people) print(copied.people, out);
     for (const auto& [topic, cause] : copied.left_out) out << "left out: " << topic << ": " << cause << '\n';
   }
   return copied.damages.empty() && copied.left_out.empty() ? service::kOk : service::kPartialLoss;
@@ -147,6 +170,8 @@ void add_convert_command(CLI::App& app, ConvertOptions& options) {
   command->add_option("--compress", options.compression, "Compression of MCAP chunks: none, lz4, zstd")
       ->check(CLI::IsMember({"none", "lz4", "zstd"}))
       ->capture_default_str();
+  command->add_flag("--blur-people", options.blur_people,
+                    "Pixelate people in images, by the detections in the recording; images without as a whole");
   command->add_flag("--json", options.json, "Print the summary as JSON");
   command->footer(
       "Exit codes: 0 done, 1 failed while converting, 2 nothing was written, 3 done but part of the source was "
@@ -157,6 +182,10 @@ void add_convert_command(CLI::App& app, ConvertOptions& options) {
 int run_convert(const ConvertOptions& options, std::ostream& out, std::ostream& err) {
   return service::report_errors<SourceError, mcap::RecordingFileError>("rtd convert", err, [&] {
     const std::string uri = camera::complete_uri(options.source);
+    if (options.blur_people && !copies_recording(options, uri))
+      throw SourceError(
+          "--blur-people works on a recording that becomes an MCAP file whole: 'rtd convert "
+          "RECORDING BLURRED.mcap --blur-people', then convert that");
     if (copies_recording(options, uri)) return copy(options, uri.substr(uri.find(':') + 1), out, err);
     const auto source = camera::make_source(uri);
     const std::uint64_t frames = write(*source, options, err);

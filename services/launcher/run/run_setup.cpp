@@ -305,6 +305,7 @@ RunSetup prepare_run(const RunOptions& options) {
   process::make_out_folder(setup.out_dir);
   if (!setup.trace.empty()) check_trace_file(setup.trace);
   if (bus::surely_empty(setup.bus_options)) setup.launcher.domain_check_ms = 0;
+  if (setup.blur_people && setup.record.empty()) throw ConfigError("--blur-people is for what --record FILE records");
   if (fs::exists(setup.record)) throw ConfigError("--record " + setup.record + " exists already: choose another name");
   return setup;
 }
@@ -336,7 +337,9 @@ std::vector<ServicePlan> plan_services(const RunSetup& setup) {
   const bool detector = !setup.model_path.empty(), filter = !setup.replay.features;
   if (!setup.record.empty()) {
     // Restarted, it continues in a second file; an earlier recording is refused before the run starts.
-    plans.push_back(plan(setup, "record", ServiceRole::kOptional, {"-o", setup.record, "--beside"}));
+    std::vector<std::string> arguments{"-o", setup.record, "--beside"};
+    if (setup.blur_people) arguments.emplace_back("--blur-people");
+    plans.push_back(plan(setup, "record", ServiceRole::kOptional, std::move(arguments)));
     plans.back().ends_last = true;
   }
   if (detector) plans.push_back(plan(setup, "detector", ServiceRole::kOptional, detector_arguments(setup)));

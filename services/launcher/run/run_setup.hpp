@@ -86,6 +86,7 @@ struct RunOptions {
   std::string viewer;                      ///< also show the run in the browser: parse_viewer_use(); empty = no
   std::string trace;                       ///< write what each service did when into this file; empty = no
   std::string record;                      ///< also record all topics: FILE.mcap or a folder; empty = no
+  bool blur_people = false;                ///< in what is recorded
   std::vector<std::string> replay_topics;  ///< "detections", "features": recorded ones instead of their services
   bool show_masks = false;  ///< have people's masks computed for the report, also where nothing else reads them
   bool quiet = false;

@@ -4,7 +4,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/io/byte_sink.hpp"
+#include "common/mcap/writer.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/component/recorder/recorded_file.hpp"
+#include "tests/support/people_messages.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -54,6 +58,44 @@ TEST_F(ConvertTest, carries_every_topic_of_a_recording) {
   EXPECT_THAT(output_, HasSubstr("16 messages of 4 topics written to " + copy));
   EXPECT_EQ(convert({file, copy}), 2);
   EXPECT_THAT(output_, HasSubstr(copy + " exists"));
+}
+
+/// A recording of a frame with a person, and of the detector's boxes or not.
+void record_person(const std::string& path, bool detected) {
+  io::FileSink sink(path);
+  mcap::Writer writer(sink);
+  const auto add = [&](const char* topic, const char* type, const std::vector<std::uint8_t>& cdr) {
+    const auto channel = writer.add(mcap::Channel{0, writer.add(mcap::Schema{0, type, "", ""}), topic, "cdr", {}});
+    writer.write(mcap::Message{channel, 1, 1, 1, std::as_bytes(std::span(cdr))});
+  };
+  add("rtd/frame", "rtd_msgs::msg::dds_::RgbdFrame_",
+      test_support::frame_cdr(1'000'000'000, test_support::room_with_person()));
+  if (detected)
+    add("/detector/detections", "vision_msgs/msg/Detection2DArray",
+        test_support::cdr_of(test_support::detections(1'000'000'000, {test_support::kPerson})));
+  writer.close();
+}
+
+TEST_F(ConvertTest, takes_people_out_of_a_recording_with_detections) {
+  const std::string file = scratch_ / "walk.mcap", shared = scratch_ / "shared.mcap";
+  record_person(file, true);
+  EXPECT_EQ(convert({file, shared, "--blur-people", "--compress", "none"}), 0) << output_;
+  EXPECT_THAT(output_, HasSubstr("people are pixelated in 1 images"));
+  const std::vector<std::byte> cdr = recorder::read_recording(shared).topics.at("rtd/frame").at(0).cdr;
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(cdr.data());
+  const cv::Mat room = test_support::room_with_person();
+  EXPECT_LT(test_support::likeness(room, test_support::colors_of({bytes, bytes + cdr.size()})), 0.5);
+  EXPECT_EQ(convert({shared, scratch_ / "tum", "--blur-people"}), 2);
+  EXPECT_THAT(output_, HasSubstr("then convert that"));
+}
+
+TEST_F(ConvertTest, without_detections_it_says_how_to_get_them_and_writes_nothing) {
+  const std::string file = scratch_ / "walk.mcap", shared = scratch_ / "shared.mcap";
+  record_person(file, false);
+  EXPECT_EQ(convert({file, shared, "--blur-people"}), 2);
+  EXPECT_THAT(output_, AllOf(HasSubstr("has no detections"), HasSubstr("rtd run --source " + file),
+                             HasSubstr("--record NEW.mcap --blur-people")));
+  EXPECT_FALSE(fs::exists(shared));
 }
 
 TEST_F(ConvertTest, overwrites_nothing) {

@@ -14,6 +14,7 @@
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/config.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
+#include "tests/support/people_messages.hpp"
 #include "tests/support/service_fixture.hpp"
 
 namespace rtd::recorder {
@@ -86,6 +87,50 @@ TEST_F(RecorderTest, commands_end_a_recording_and_begin_another) {
   ASSERT_EQ(again.topics.at("/slam/pose").size(), 1U);
   EXPECT_EQ(again.topics.at("/slam/pose")[0].cdr, cdr(7));
   EXPECT_EQ(again.topics.size(), 1U) << "no commands";
+}
+
+std::vector<std::byte> as_bytes(const std::vector<std::uint8_t>& cdr) {
+  const auto bytes = std::as_bytes(std::span(cdr));
+  return {bytes.begin(), bytes.end()};
+}
+
+TEST_F(RecorderTest, people_are_pixelated_where_they_are_known_to_be_and_everything_elsewhere) {
+  config_.blur_people = true;
+  const cv::Mat room = test_support::room_with_person();
+  const auto frame = writer("rtd/frame", "rtd_msgs::msg::dds_::RgbdFrame_");
+  const auto detections = writer("rt/detector/detections", "vision_msgs::msg::dds_::Detection2DArray_");
+  start(service::Pace::kRealtime);
+  wait_matched(*frame);
+  wait_matched(*detections);
+  const auto write_frame = [&](std::int64_t stamp_ns) {
+    frame->write(as_bytes(test_support::frame_cdr(stamp_ns, room)));
+  };
+  write_frame(1'000'000'000);
+  detections->write(as_bytes(test_support::cdr_of(test_support::detections(1'000'000'000, {test_support::kPerson}))));
+  write_frame(9'000'000'000);
+  ASSERT_TRUE(wait_metric("messages", 3)) << "in two seconds at most";
+  EXPECT_EQ(stop(), service::kOk);
+  const RecordedFile recorded = read_recording(config_.output);
+  const auto colors = [&](std::size_t i) {
+    const std::vector<std::byte>& cdr = recorded.topics.at("rtd/frame").at(i).cdr;
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(cdr.data());
+    return test_support::colors_of({bytes, bytes + cdr.size()});
+  };
+  EXPECT_LT(test_support::likeness(room, colors(0)), 0.5);
+  EXPECT_LT(test_support::likeness(room, colors(1)), 0.5);
+  const cv::Rect wall(220, 0, 100, 240);
+  EXPECT_EQ(cv::norm(colors(0)(wall), room(wall), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(colors(1)(wall), room(wall), cv::NORM_INF), 0) << "nothing was known";
+  const io::FileSource source(config_.output);
+  mcap::IndexedReader reader(source);
+  for (const mcap::MetadataIndex& index : reader.summary().metadata_indexes) {
+    if (index.name != "rtd:people") continue;
+    const auto people = reader.metadata(index)->metadata;
+    EXPECT_EQ(people.at("blurred"), "1");
+    EXPECT_EQ(people.at("hidden"), "1");
+    return;
+  }
+  ADD_FAILURE() << "the file does not say what was done";
 }
 
 TEST_F(RecorderTest, a_command_writes_only_recordings_and_only_in_their_folder) {
