@@ -51,7 +51,8 @@ std::vector<TopicRoles> with_services(std::vector<TopicRoles> roles) {
       {"slam/reset", "slam"},         {"slam/save_map", "slam"},   {"slam/load_map", "slam"},
       {"slam/localize_only", "slam"}, {"slam/ask", "slam"},        {"filter/set_mode", "filter"},
       {"recorder/start", "record"},   {"recorder/stop", "record"}, {"replay/pause", "replay"},
-      {"replay/step", "replay"},      {"replay/seek", "replay"},   {"replay/speed", "replay"}};
+      {"replay/step", "replay"},      {"replay/seek", "replay"},   {"replay/speed", "replay"},
+      {"atlas/save", "atlas"},        {"atlas/load", "atlas"},     {"atlas/forget", "atlas"}};
   for (const Command& command : kCommands) add_service(roles, command.name, {command.server}, kCallers);
   for (const char* name : {"describe_parameters", "get_parameter_types", "get_parameters", "list_parameters",
                            "set_parameters", "set_parameters_atomically", "get_type_description"})
@@ -80,7 +81,11 @@ const std::vector<TopicRoles>& topic_roles() {
       {kFeatures.name, {"filter"}, {"slam", "launcher", "viewer"}},
       {kKeyframes.name, {"slam"}, {"filter", "dense", "viewer"}},
       {kTracking.name, {"slam"}, {"camera", "filter", "dense", "detector", "launcher", "viewer"}},
-      {kMap.name, {"slam"}, {"viewer"}},
+      {kMap.name, {"slam"}, {"viewer", "atlas"}},
+      {kKeyframeFeatures.name, {"slam"}, {"atlas"}},
+      {kKeyframeRequest.name, {"atlas"}, {"slam"}},
+      {kSubmap.name, {"atlas"}, {"slam"}},
+      {kAtlas.name, {"atlas"}, Roles{"viewer", "observer"}},
       {kMovers.name, {"filter"}, Roles{"viewer", "observer"}},
       {kMoverBoxes.name, {"filter"}, kOnlookers},
       {kMoverMarkers.name, {"filter"}, kOnlookers},
@@ -88,7 +93,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kOdometry.name, {"slam", "link"}, kOnlookers},
       {kPose.name, {"slam", "link"}, kOnlookers},
       {kTf.name, {"slam", "link"}, kOnlookers},
-      {kTfStatic.name, {"camera"}, {"slam"}},
+      {kTfStatic.name, {"camera", "atlas"}, {"slam"}},
       {kMapJumps.name, {"slam"}, kOnlookers},
       {kPath.name, {"slam"}, kOnlookers},
       {kMapPoints.name, {"slam"}, kOnlookers},

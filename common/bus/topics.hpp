@@ -24,6 +24,10 @@ inline constexpr Topic<msg::FeatureFrame> kFeatures{"rtd/features", QosProfile::
 inline constexpr Topic<msg::KeyframeEvent> kKeyframes{"rtd/keyframes", QosProfile::kKeyframes};
 inline constexpr Topic<msg::TrackingResult> kTracking{"rtd/tracking", QosProfile::kTracking};
 inline constexpr Topic<msg::MapUpdate> kMap{"rtd/map", QosProfile::kTracking};
+inline constexpr Topic<msg::KeyframeFeatures> kKeyframeFeatures{"rtd/keyframe_features", QosProfile::kTracking};
+inline constexpr Topic<msg::KeyframeRequest> kKeyframeRequest{"rtd/keyframe_request", QosProfile::kDetections};
+inline constexpr Topic<msg::Submap> kSubmap{"rtd/submap", QosProfile::kDetections};
+inline constexpr Topic<msg::AtlasState> kAtlas{"rtd/atlas", QosProfile::kLatched};
 inline constexpr Topic<msg::Movers> kMovers{"rtd/movers", QosProfile::kDetections};
 inline constexpr Topic<msg::ServiceStatus> kStatus{"rtd/status", QosProfile::kHeartbeat};
 inline constexpr Topic<msg::CompressedImage> kColorJpeg{"rt/camera/color/image_raw/compressed",

@@ -33,6 +33,8 @@ inline constexpr SampleLimit kLargestSamples[] = {
     {"nav_msgs/Path", 4 * kMib},                // 30,000 poses
     {"rtd_msgs/MapUpdate", 2 * kMib},
     {"rtd_msgs/Movers", kMib},
+    {"rtd_msgs/KeyframeFeatures", 512 * kKib},
+    {"rtd_msgs/Submap", 4 * kMib},
     {"vision_msgs/Detection2DArray", kMib},
     {"vision_msgs/Detection3DArray", kMib},
     {"visualization_msgs/MarkerArray", kMib},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "common/msg/atlas.hpp"
 #include "common/msg/features.hpp"
 #include "common/msg/map_update.hpp"
 #include "common/msg/movers.hpp"
@@ -16,9 +17,10 @@ template <class... T>
 struct TypeList {};
 
 /// Every message type that the bus carries.
-using MessageTypes = TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent,
-                              TrackingResult, ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray,
-                              Odometry, PoseStamped, TFMessage, Path, PointCloud2, DiagnosticArray, MapUpdate, Movers,
-                              Detection3DArray, MarkerArray, OccupancyGrid, TransformStamped>;
+using MessageTypes =
+    TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent, TrackingResult,
+             ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray, Odometry, PoseStamped, TFMessage,
+             Path, PointCloud2, DiagnosticArray, MapUpdate, Movers, Detection3DArray, MarkerArray, OccupancyGrid,
+             TransformStamped, KeyframeFeatures, KeyframeRequest, Submap, AtlasState>;
 
 }  // namespace rtd::msg

@@ -20,7 +20,7 @@ struct NamedService {
 };
 
 /// The services, in the order in which a frame passes them.
-inline constexpr std::array<NamedService, 9> kServices{{
+inline constexpr std::array<NamedService, 10> kServices{{
     {.name = "camera", .executable = "rtd-camera", .help = "Publish the frames of a source", .in_every_run = true},
     {.name = "detector",
      .executable = "rtd-detector",
@@ -41,6 +41,10 @@ inline constexpr std::array<NamedService, 9> kServices{{
     {.name = "link",
      .executable = "rtd-link",
      .help = "Pass a robot's poses, images and detections to and from a fleet's domain",
+     .started_by_run = false},
+    {.name = "atlas",
+     .executable = "rtd-atlas",
+     .help = "Join the maps of several robots in one building",
      .started_by_run = false},
 }};
 

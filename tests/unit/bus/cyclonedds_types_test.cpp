@@ -49,7 +49,11 @@ const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame
                                                     &vision_msgs_msg_dds__Detection3DArray__desc,
                                                     &visualization_msgs_msg_dds__MarkerArray__desc,
                                                     &nav_msgs_msg_dds__OccupancyGrid__desc,
-                                                    &geometry_msgs_msg_dds__TransformStamped__desc};
+                                                    &geometry_msgs_msg_dds__TransformStamped__desc,
+                                                    &rtd_msgs_msg_dds__KeyframeFeatures__desc,
+                                                    &rtd_msgs_msg_dds__KeyframeRequest__desc,
+                                                    &rtd_msgs_msg_dds__Submap__desc,
+                                                    &rtd_msgs_msg_dds__AtlasState__desc};
 
 /// A participant that no other process sees.
 class LocalDomain {

@@ -31,12 +31,36 @@ TopicFacts facts(const Topic<T>& topic) {
 
 std::vector<TopicFacts> all_topics() {
   using namespace topics;
-  return {facts(kFrame),        facts(kFeatures),   facts(kKeyframes),     facts(kTracking),    facts(kStatus),
-          facts(kColorJpeg),    facts(kCameraInfo), facts(kDetections),    facts(kOdometry),    facts(kPose),
-          facts(kTf),           facts(kPath),       facts(kMapPoints),     facts(kDiagnostics), facts(kDynamicMask),
-          facts(kDensePoints),  facts(kMap),        facts(kMovers),        facts(kGroundTruth), facts(kMoverBoxes),
-          facts(kMoverMarkers), facts(kTfStatic),   facts(kOccupancyGrid), facts(kPersonMasks), facts(kMapJumps),
-          facts(kDepthJpeg)};
+  return {facts(kFrame),
+          facts(kFeatures),
+          facts(kKeyframes),
+          facts(kTracking),
+          facts(kStatus),
+          facts(kColorJpeg),
+          facts(kCameraInfo),
+          facts(kDetections),
+          facts(kOdometry),
+          facts(kPose),
+          facts(kTf),
+          facts(kPath),
+          facts(kMapPoints),
+          facts(kDiagnostics),
+          facts(kDynamicMask),
+          facts(kDensePoints),
+          facts(kMap),
+          facts(kMovers),
+          facts(kGroundTruth),
+          facts(kMoverBoxes),
+          facts(kMoverMarkers),
+          facts(kTfStatic),
+          facts(kOccupancyGrid),
+          facts(kPersonMasks),
+          facts(kMapJumps),
+          facts(kDepthJpeg),
+          facts(kKeyframeFeatures),
+          facts(kKeyframeRequest),
+          facts(kSubmap),
+          facts(kAtlas)};
 }
 
 TEST(Topics, have_names_of_their_own) {
@@ -46,9 +70,9 @@ TEST(Topics, have_names_of_their_own) {
 
 TEST(Topics, standard_types_go_where_ros2_looks_and_our_own_do_not) {
   for (const TopicFacts& topic : all_topics()) {
-    const bool own_type = topic.plain || topic.type == MessageTraits<msg::ServiceStatus>::kId ||
-                          topic.type == MessageTraits<msg::MapUpdate>::kId ||
-                          topic.type == MessageTraits<msg::Movers>::kId;
+    const bool own_type = visit_message_type(topic.type, []<class T>() {
+      return std::string_view(msg::type_name(msg::TypeOf<T>())).starts_with("rtd_msgs/");
+    });
     EXPECT_EQ(topic.name.rfind("rt/", 0) == 0, !own_type) << topic.name;
   }
 }
