@@ -8,6 +8,8 @@
 #include <limits>
 #include <string_view>
 
+#include "common/msg/features.hpp"
+
 /// What a field of a message may hold, by name. The walk over the fields (common/msg/plausible.hpp) goes by this list;
 /// it does not compile for a field of whole numbers that has no entry here, so that none is forgotten. Without an
 /// entry:
@@ -177,9 +179,19 @@ inline constexpr FieldRule kFieldRules[] = {
     free_field("rtd_msgs/MapKeyframe.covisible"),
     between("rtd_msgs/MapUpdate.revision", 0, kMaxSequence),
     free_field("rtd_msgs/MapUpdate.loop_edges"),
+    within("rtd_msgs/KeyframeFeature.u_px", kMaxPosition_px),
+    within("rtd_msgs/KeyframeFeature.v_px", kMaxPosition_px),
+    between("rtd_msgs/KeyframeFeature.depth_m", 0, 65'536),
+    within("rtd_msgs/KeyframeFeature.angle_rad", 100),
     free_field("rtd_msgs/KeyframeFeature.landmark_id"),
+    between("rtd_msgs/KeyframeFeature.static_probability", 0, 1),
+    between("rtd_msgs/KeyframeFeature.octave", 0, 31),
+    free_field("rtd_msgs/KeyframeFeature.flags"),
+    free_field("rtd_msgs/KeyframeFeature.descriptor"),
+    between("rtd_msgs/KeyframeFeatures.width", 1, 1920),
+    between("rtd_msgs/KeyframeFeatures.height", 1, 1920),
     free_field("rtd_msgs/KeyframeFeatures.keyframe_id"),
-    between("rtd_msgs/KeyframeFeatures.readout_s", 0, 1),
+    within("rtd_msgs/KeyframeFeatures.readout_s", 0.1),
     at_most("rtd_msgs/KeyframeFeatures.features", kMaxFeatures),
     free_field("rtd_msgs/KeyframeRequest.keyframe_ids"),
     at_most("rtd_msgs/Submap.file", std::size_t{4} << 20),
