@@ -17,12 +17,26 @@ using service::BaseConfig;
 using service::MapFileConfig;
 using service::MotionTopics;
 
+/// `slam.atlas`: what is shared with an atlas, if there is one.
+struct AtlasConfig {
+  bool ask = true;
+  int bytes_per_s = 150'000;
+
+  void bind(auto& binder) {
+    binder.field("ask", ask,
+                 "a robot whose map is new or whose camera is lost asks an atlas where it is; not at pace lockstep");
+    binder.field("bytes_per_s", bytes_per_s, {1000, 1'000'000'000},
+                 "keyframes that the atlas asks for are sent no faster");
+  }
+};
+
 /// Section `slam` of the configuration.
 struct ServiceConfig {
   SlamConfig core;  ///< without what core_config() adds
   std::string vocabulary_file;
   MapFileConfig map;
   BaseConfig base;
+  AtlasConfig atlas;
   MotionTopics motion;
   std::string out_dir;
   std::string map_frame = "map";
@@ -51,6 +65,7 @@ struct ServiceConfig {
     binder.section("loop", core.loop);
     binder.section("map", map);
     binder.section("base", base);
+    binder.section("atlas", atlas);
     service::bind_localize_only(binder, core.localize_only);
     binder
         .field("out", out_dir, "folder for trajectory.txt, keyframes.txt and map.ply, written at the end; empty: none")

@@ -97,16 +97,22 @@ void MapPublisher::loop() {
     const MapChanges::Extent extent = next_extent();
     const MapView view = view_();
     const MapNews news = changes_.update(view, extent);
-    if (news.new_session) begin_session();
+    if (news.new_session) begin_session(view.session);
     std::vector<msg::MapUpdate> updates = make_map_updates(view, news);
     pause = std::max(pause, kRest * std::chrono::nanoseconds(service::monotonic_ns() - start_ns));
     send(updates);
   }
 }
 
-void MapPublisher::begin_session() {
-  session_ns_ = std::max(service::realtime_ns(), session_ns_ + 1);
+void MapPublisher::begin_session(std::uint64_t map) {
+  const std::lock_guard lock(mutex_);
+  session_ = {std::max(service::realtime_ns(), session_.session_ns + 1), map};
   revision_ = 0;
+}
+
+MapPublisher::Session MapPublisher::session() const {
+  const std::lock_guard lock(mutex_);
+  return session_;
 }
 
 /// Each side matches on its own: what is written before the reader has matched too never reaches it.
@@ -123,7 +129,7 @@ MapChanges::Extent MapPublisher::next_extent() {
 void MapPublisher::send(std::span<msg::MapUpdate> updates) {
   constexpr std::size_t kOnTheWay = 16;
   for (std::size_t i = 0; i < updates.size() && !ended_.stop_requested(); ++i) {
-    updates[i].session_ns = session_ns_;
+    updates[i].session_ns = session_.session_ns;
     updates[i].revision = ++revision_;
     writer_.write(updates[i]);
     if ((i + 1) % kOnTheWay == 0 || i + 1 == updates.size()) wait_for_readers();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <span>
 #include <thread>
 #include <vector>
@@ -31,9 +32,16 @@ class MapPublisher {
   MapPublisher(const MapPublisher&) = delete;
   MapPublisher& operator=(const MapPublisher&) = delete;
 
+  /// What is being published, and of which map.
+  struct Session {
+    std::int64_t session_ns = 0;  ///< MapUpdate::session_ns; 0: nothing was yet
+    std::uint64_t map = 0;        ///< MapView::session
+  };
+  Session session() const;  ///< any thread
+
  private:
   void loop();
-  void begin_session();
+  void begin_session(std::uint64_t map);
   MapChanges::Extent next_extent();
   void send(std::span<msg::MapUpdate> updates);
   void wait_for_readers();
@@ -41,7 +49,8 @@ class MapPublisher {
   const std::function<MapView()> view_;
   const std::chrono::milliseconds period_;
   MapChanges changes_;
-  std::int64_t session_ns_ = 0;
+  mutable std::mutex mutex_;  ///< guards session_
+  Session session_;
   std::uint64_t revision_ = 0;
   bool behind_ = false;                       ///< a reader has not acknowledged in time: it may have lost messages
   int readers_ = 0;                           ///< as of the last match, which comes on a thread of the bus

@@ -45,6 +45,7 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
       publisher_(config_, runtime.bus, [this](MapId map) { return slam_.map_points(map); }),
       map_publisher_(
           runtime.bus, [this] { return slam_.map_view(); }, std::chrono::milliseconds(config_.map_changes_period_ms)),
+      keyframe_sender_(runtime.bus, config_, slam_, map_publisher_),
       arrivals_(runtime.pace == service::Pace::kRealtime
                     ? std::make_shared<Arrivals>(kRealtimeQueue, concurrency::Overflow::kDropOldest)
                     : std::make_shared<Arrivals>(kEveryFrameQueue, concurrency::Overflow::kBlock)),

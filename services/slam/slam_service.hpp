@@ -17,6 +17,7 @@
 #include "services/slam/camera_tree.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
+#include "services/slam/keyframe_sender.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/map_publisher.hpp"
@@ -74,6 +75,7 @@ class SlamService {
   CameraTree camera_tree_;
   SlamPublisher publisher_;
   MapPublisher map_publisher_;
+  KeyframeSender keyframe_sender_;
   std::optional<inertial::MotionFeed> motion_;  ///< IMU and wheels
   std::shared_ptr<Arrivals> arrivals_;
   const std::shared_ptr<bus::SourceGate> filter_;

@@ -384,10 +384,10 @@ std::vector<MapPoint> SlamSystem::map_points(MapId id) const {
 
 MapView SlamSystem::map_view() const {
   while (true) {
-    const std::uint64_t session = mapping_.session();
+    const std::uint64_t session = map_session();
     MapView view = copy_view([this](const auto& look) { read_map(look); });
     view.session = session;
-    if (mapping_.session() == session) return view;  // else it may be of two maps
+    if (map_session() == session) return view;  // else it may be of two maps
   }
 }
 

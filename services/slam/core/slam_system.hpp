@@ -101,6 +101,8 @@ class SlamSystem {
   std::vector<MapPoint> map_points(MapId id = 0) const;
   /// What viewers show of all maps.
   MapView map_view() const;
+  /// MapView::session of the map that read_map() shows. Any thread.
+  std::uint64_t map_session() const { return mapping_.session(); }
   /// Of the last frame. The thread of process().
   const PoseEvidence& evidence() const { return evidence_; }
   std::vector<MapId> maps() const {
