@@ -15,7 +15,6 @@
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/patience.hpp"
 #include "services/slam/config.hpp"
-#include "services/slam/map_file.hpp"
 #include "services/slam/map_keeper.hpp"
 
 namespace rtd::slam {
@@ -54,6 +53,11 @@ SlamService::SlamService(const Config& config, service::Runtime& runtime)
   if (config_.motion.given()) {
     motion_.emplace(runtime.bus_options, inertial::MotionFeedTopics{config_.motion.imu, config_.motion.wheels, "slam"});
   }
+  if (config_.atlas.ask && runtime.pace != service::Pace::kLockstep) {
+    atlas_.emplace(
+        runtime.bus, config_.core.sensor, slam_, keyframe_sender_,
+        [this](MapContents contents) { return take_map(std::move(contents)); }, [this] { forget_map(); });
+  }
   load_map();
   runtime.stop.on_stop([arrivals = arrivals_] { arrivals->close(); });
   runtime.heartbeat.on_status([this](const msg::ServiceStatus& status) {
@@ -71,56 +75,6 @@ SlamService::~SlamService() {
   runtime_.heartbeat.on_status({});
 }
 
-void SlamService::load_map() {
-  const std::string& file = config_.map.load;
-  if (file.empty()) return;
-  const std::int64_t start_ns = service::monotonic_ns();
-  try {
-    MapContents contents = load_map_file(file);
-    map_cameras_ = cameras_of(contents);
-    SPDLOG_INFO("event=map_loaded file={} keyframes={} landmarks={} maps={}", file, contents.keyframes.size(),
-                contents.landmarks.size(), std::ranges::count_if(contents.keyframes, &Keyframe::is_origin));
-    slam_.restore(std::move(contents));
-  } catch (const std::runtime_error& error) {  // it cannot be read, or is no map
-    throw service::ConfigError(std::string("slam.map.load: ") + error.what());
-  }
-  SPDLOG_INFO("event=map_ready file={} ms={:.0f}", file,
-              static_cast<double>(service::monotonic_ns() - start_ns) * 1e-6);
-}
-
-bool SlamService::check_camera(const msg::FeatureFrame& frame) {
-  const std::string difference = difference_to(map_cameras_, frame);
-  if (difference.empty()) return true;
-  if (map_by_command_) {
-    SPDLOG_WARN("event=map_given_up cause=\"{}\"", difference);
-    forget_map();
-    refused_map_ = "the map of slam/load_map is not used: " + difference;
-    return true;
-  }
-  SPDLOG_ERROR("event=other_camera file={} cause=\"{}\"", config_.map.load, difference);
-  return false;
-}
-
-/// How its cameras differ from ours, and what to do; then nothing is taken.
-std::string SlamService::take_map(MapContents contents) {
-  MapCameras cameras = cameras_of(contents);
-  const std::string difference = last_frame_ ? difference_to(cameras, *last_frame_) : "";
-  if (!difference.empty()) return difference;
-  map_cameras_ = std::move(cameras);
-  map_by_command_ = true;
-  refused_map_.clear();
-  slam_.load_map(std::move(contents));
-  publisher_.begin_map();
-  return {};
-}
-
-void SlamService::forget_map() {
-  map_cameras_.clear();
-  refused_map_.clear();
-  slam_.reset();
-  publisher_.begin_map();
-}
-
 service::ExitCode SlamService::run() {
   commands_.emplace(
       runtime_.bus, config_.map, maps_folder(config_, service::state_folder(service::process_environment())), slam_,
@@ -134,6 +88,7 @@ service::ExitCode SlamService::run() {
     if (frame && counters_.frames == 0 && !check_camera(**frame)) return service::kUsageOrConfig;
     if (frame) answer(**frame);
     if (frame) last_frame_ = *frame;
+    if (frame && atlas_) atlas_->update(**frame, last_result_);
     watch_input(frame.has_value());
   }
   commands_->close();

@@ -14,6 +14,7 @@
 #include "common/service/recent_messages.hpp"
 #include "common/service/runtime.hpp"
 #include "common/service/topic_source.hpp"
+#include "services/slam/atlas_client.hpp"
 #include "services/slam/camera_tree.hpp"
 #include "services/slam/config.hpp"
 #include "services/slam/core/slam_system.hpp"
@@ -76,6 +77,7 @@ class SlamService {
   SlamPublisher publisher_;
   MapPublisher map_publisher_;
   KeyframeSender keyframe_sender_;
+  std::optional<AtlasClient> atlas_;            ///< not at pace lockstep: its answers come when they come
   std::optional<inertial::MotionFeed> motion_;  ///< IMU and wheels
   std::shared_ptr<Arrivals> arrivals_;
   const std::shared_ptr<bus::SourceGate> filter_;
