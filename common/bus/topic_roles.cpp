@@ -86,6 +86,8 @@ const std::vector<TopicRoles>& topic_roles() {
       {kKeyframeRequest.name, {"atlas"}, {"slam"}},
       {kSubmap.name, {"atlas"}, {"slam"}},
       {kAtlas.name, {"atlas"}, Roles{"viewer", "observer"}},
+      {kAtlasRobots.name, {"atlas"}, kOnlookers},
+      {kAtlasPoints.name, {"atlas"}, kOnlookers},
       {kMovers.name, {"filter"}, Roles{"viewer", "observer"}},
       {kMoverBoxes.name, {"filter"}, kOnlookers},
       {kMoverMarkers.name, {"filter"}, kOnlookers},

@@ -57,6 +57,9 @@ inline constexpr Topic<msg::PointCloud2> kDensePoints{"rt/dense/points", QosProf
 /// Some of the points of what moved, of the last frames.
 inline constexpr Topic<msg::PointCloud2> kMovingPoints{"rt/dense/moving_points", QosProfile::kLatched};
 inline constexpr Topic<msg::OccupancyGrid> kOccupancyGrid{"rt/map", QosProfile::kLatched};
+/// Where the robots are in the joint map: those of AtlasState::robots that have met it, in their order.
+inline constexpr Topic<msg::PoseArray> kAtlasRobots{"rt/atlas/robots", QosProfile::kLatched};
+inline constexpr Topic<msg::PointCloud2> kAtlasPoints{"rt/atlas/points", QosProfile::kLatched};
 inline constexpr Topic<msg::DiagnosticArray> kDiagnostics{"rt/diagnostics", QosProfile::kPose};
 }  // namespace topics
 

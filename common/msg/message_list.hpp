@@ -21,6 +21,6 @@ using MessageTypes =
     TypeList<RgbdFrame, RgbdFrame848, RgbdFrame1280, RgbdFrame1920, FeatureFrame, KeyframeEvent, TrackingResult,
              ServiceStatus, CompressedImage, Image, CameraInfo, Detection2DArray, Odometry, PoseStamped, TFMessage,
              Path, PointCloud2, DiagnosticArray, MapUpdate, Movers, Detection3DArray, MarkerArray, OccupancyGrid,
-             TransformStamped, KeyframeFeatures, KeyframeRequest, Submap, AtlasState>;
+             TransformStamped, KeyframeFeatures, KeyframeRequest, Submap, AtlasState, PoseArray>;
 
 }  // namespace rtd::msg

@@ -52,6 +52,11 @@ struct PoseStamped {
   Pose pose;
 };
 RTD_FIELDS(geometry_msgs, PoseStamped, header, pose)
+struct PoseArray {
+  Header header;
+  std::vector<Pose> poses;
+};
+RTD_FIELDS(geometry_msgs, PoseArray, header, poses)
 struct PoseWithCovariance {
   Pose pose;
   std::array<double, 36> covariance{};

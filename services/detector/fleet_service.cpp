@@ -180,40 +180,11 @@ constexpr std::chrono::milliseconds kUpdatePeriod{50};  ///< robots come and go,
 
 }  // namespace
 
-RobotFinder::RobotFinder(const bus::BusOptions& options) : bus_(bus::connect_raw(options)) {
-  bus_->watch([this](const bus::TopicWriter& writer, bus::WriterChange change) { note(writer, change); });
-}
-
-RobotFinder::~RobotFinder() {
-  bus_->watch({});
-}
-
-void RobotFinder::note(const bus::TopicWriter& writer, bus::WriterChange change) {
-  const bus::RobotTopic name = bus::split_robot(writer.topic.name);
-  if (name.topic != bus::topics::kColorJpeg.name) return;
-  if (writer.topic.type != bus::dds_type_name(bus::MessageTraits<msg::CompressedImage>::kId)) return;
-  const std::lock_guard lock(mutex_);
-  std::set<bus::WriterId>& cameras = cameras_[name.robot];
-  if (change == bus::WriterChange::kGone) {
-    cameras.erase(writer.id);
-  } else {
-    cameras.insert(writer.id);
-  }
-  if (cameras.empty()) cameras_.erase(name.robot);
-}
-
-std::set<std::string> RobotFinder::robots() const {
-  const std::lock_guard lock(mutex_);
-  std::set<std::string> names;
-  for (const auto& [robot, cameras] : cameras_) names.insert(robot);
-  return names;
-}
-
 FleetService::FleetService(const FleetConfig& config, service::Runtime& runtime, Inference inference)
     : config_(config),
       runtime_(runtime),
       pipeline_(std::make_shared<FleetPipeline>(config, std::move(inference), outputs())),
-      finder_(runtime.bus_options) {
+      finder_(runtime.bus_options, bus::topics::kColorJpeg) {
   runtime.heartbeat.watch_progress(config.stuck_after);
   runtime.stop.on_stop([pipeline = pipeline_] { pipeline->close(); });
 }

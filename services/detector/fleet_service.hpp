@@ -149,7 +149,7 @@ class FleetService {
   std::set<std::string> denied_;   ///< robots whose topics the bus refuses
   std::set<std::string> refused_;  ///< robots that are not served: one log line each
   service::RateLimit robot_log_{std::chrono::seconds(1)};
-  RobotFinder finder_;
+  bus::RobotFinder finder_;  ///< by their cameras, which announce JPEG images
 };
 
 }  // namespace rtd::detector

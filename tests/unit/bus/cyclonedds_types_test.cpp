@@ -53,7 +53,8 @@ const dds_topic_descriptor_t* const kGenerated[] = {&rtd_msgs_msg_dds__RgbdFrame
                                                     &rtd_msgs_msg_dds__KeyframeFeatures__desc,
                                                     &rtd_msgs_msg_dds__KeyframeRequest__desc,
                                                     &rtd_msgs_msg_dds__Submap__desc,
-                                                    &rtd_msgs_msg_dds__AtlasState__desc};
+                                                    &rtd_msgs_msg_dds__AtlasState__desc,
+                                                    &geometry_msgs_msg_dds__PoseArray__desc};
 
 /// A participant that no other process sees.
 class LocalDomain {

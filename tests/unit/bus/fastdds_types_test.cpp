@@ -52,6 +52,7 @@ using Pairs = testing::Types<
     Pair<msg::Detection3DArray, vision_msgs::msg::dds_::Detection3DArray_PubSubType>,
     Pair<msg::MarkerArray, visualization_msgs::msg::dds_::MarkerArray_PubSubType>,
     Pair<msg::Odometry, nav_msgs::msg::dds_::Odometry_PubSubType>,
+    Pair<msg::PoseArray, geometry_msgs::msg::dds_::PoseArray_PubSubType>,
     Pair<msg::PoseStamped, geometry_msgs::msg::dds_::PoseStamped_PubSubType>,
     Pair<msg::TFMessage, tf2_msgs::msg::dds_::TFMessage_PubSubType>,
     Pair<msg::TransformStamped, geometry_msgs::msg::dds_::TransformStamped_PubSubType>,

@@ -60,7 +60,9 @@ std::vector<TopicFacts> all_topics() {
           facts(kKeyframeFeatures),
           facts(kKeyframeRequest),
           facts(kSubmap),
-          facts(kAtlas)};
+          facts(kAtlas),
+          facts(kAtlasRobots),
+          facts(kAtlasPoints)};
 }
 
 TEST(Topics, have_names_of_their_own) {

@@ -49,9 +49,9 @@ class GraphBuilder {
     if (older.keyframe == newer.keyframe || !index_.contains(older.keyframe) || !index_.contains(newer.keyframe)) {
       return;
     }
-    result_.graph.edges.push_back({index_.at(older.keyframe), index_.at(newer.keyframe),
-                                   older.T_keyframe_camera * loop.T_older_newer * newer.T_keyframe_camera.inverse(),
-                                   kLoopSigmaM, kLoopSigmaRad});
+    result_.graph.edges.push_back(
+        meeting_edge(index_.at(older.keyframe), index_.at(newer.keyframe),
+                     older.T_keyframe_camera * loop.T_older_newer * newer.T_keyframe_camera.inverse()));
   }
 
   EssentialGraph take() { return std::move(result_); }
@@ -73,14 +73,7 @@ class GraphBuilder {
   void add_present_motion(KeyframeId from, KeyframeId to, int shared_landmarks) {
     const Eigen::Isometry3d T_from_to =
         map_.find_keyframe(from)->T_world_camera.inverse() * map_.find_keyframe(to)->T_world_camera;
-    if (shared_landmarks == 0) {  // where two maps were joined: it only keeps the graph in one piece
-      result_.graph.edges.push_back({index_.at(from), index_.at(to), T_from_to, kNothingKnown, kNothingKnown});
-      return;
-    }
-    const double doubt = std::sqrt(kStrong / std::clamp<double>(shared_landmarks, 10.0, 4 * kStrong));
-    const double sigma_m = kSigmaM + kSigmaPerM * T_from_to.translation().norm();
-    const double sigma_rad = kSigmaRad + kSigmaPerRad * geometry::rotation_angle_rad(T_from_to);
-    result_.graph.edges.push_back({index_.at(from), index_.at(to), T_from_to, doubt * sigma_m, doubt * sigma_rad});
+    result_.graph.edges.push_back(motion_edge(index_.at(from), index_.at(to), T_from_to, shared_landmarks));
   }
 
   const Map& map_;
@@ -89,6 +82,20 @@ class GraphBuilder {
 };
 
 }  // namespace
+
+PoseGraphEdge motion_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to,
+                          int shared_landmarks) {
+  if (shared_landmarks == 0)
+    return {from, to, T_from_to, kNothingKnown, kNothingKnown};  // keeps the graph in one piece
+  const double doubt = std::sqrt(kStrong / std::clamp<double>(shared_landmarks, 10.0, 4 * kStrong));
+  const double sigma_m = kSigmaM + kSigmaPerM * T_from_to.translation().norm();
+  const double sigma_rad = kSigmaRad + kSigmaPerRad * geometry::rotation_angle_rad(T_from_to);
+  return {from, to, T_from_to, doubt * sigma_m, doubt * sigma_rad};
+}
+
+PoseGraphEdge meeting_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to) {
+  return {from, to, T_from_to, kLoopSigmaM, kLoopSigmaRad};
+}
 
 EssentialGraph make_essential_graph(const Map& map, MapId component) {
   GraphBuilder builder(map, component);

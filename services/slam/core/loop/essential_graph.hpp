@@ -17,6 +17,13 @@ struct EssentialGraph {
   std::vector<KeyframeId> keyframes;
 };
 
+/// What is known of the motion between two keyframes that share so many landmarks; 0: two maps were joined there.
+/// docs/theory/loop_closing.md Eq. (6).
+PoseGraphEdge motion_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to,
+                          int shared_landmarks);
+/// The same of two keyframes at one place: measured over a whole neighbourhood of landmarks.
+PoseGraphEdge meeting_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to);
+
 /// Spanning tree, strong covisibility and loops of one component; the motions of the first two are those that the map
 /// has now. The first keyframe is held. docs/theory/loop_closing.md, "Essential graph". Loops with removed
 /// keyframes go to the closest remaining ancestors of those.

@@ -127,14 +127,26 @@ void Map::remove_keyframe(KeyframeId id) {
   for (const LandmarkId landmark : std::vector<LandmarkId>(keyframe.landmarks)) {
     if (landmark != kNoLandmark) remove_observation(landmark, id);
   }
-  Keyframe& parent = keyframe_at(keyframe.parent);
-  removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
-  removed_order_.push_back(id);
-  parent.children.erase(std::find(parent.children.begin(), parent.children.end(), id));
-  for (const KeyframeId child : keyframe.children) adopt_child(keyframe.parent, child);
-  --component_sizes_[keyframe.map];
+  if (keyframe.is_origin()) {
+    hand_on_origin(keyframe);
+  } else {
+    Keyframe& parent = keyframe_at(keyframe.parent);
+    removed_[id] = {keyframe.parent, parent.T_world_camera.inverse() * keyframe.T_world_camera};
+    removed_order_.push_back(id);
+    parent.children.erase(std::find(parent.children.begin(), parent.children.end(), id));
+    for (const KeyframeId child : keyframe.children) adopt_child(keyframe.parent, child);
+  }
+  if (--component_sizes_[keyframe.map] == 0) component_sizes_.erase(keyframe.map);
   keyframe_index_.erase(id);
   keyframes_.erase(id);
+}
+
+void Map::hand_on_origin(const Keyframe& origin) {
+  if (origin.children.empty()) return;
+  const KeyframeId eldest = origin.children.front();
+  keyframe_at(eldest).parent = kNoKeyframe;
+  for (const KeyframeId child : origin.children)
+    if (child != eldest) adopt_child(eldest, child);
 }
 
 void Map::adopt_child(KeyframeId parent, KeyframeId child) {

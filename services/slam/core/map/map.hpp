@@ -81,8 +81,8 @@ class Map {
   void remove_landmark(LandmarkId landmark);
   /// `kept` takes over the observations of `lost`; where a keyframe sees both, `kept` keeps its own observation.
   void replace_landmark(LandmarkId lost, LandmarkId kept);
-  /// Removes a keyframe other than the first of its component; its children go to its parent, its pose stays known
-  /// relative to it.
+  /// Removes a keyframe; its children go to its parent, its pose stays known relative to it. In the place of the first
+  /// of a component comes the eldest of its children, and nothing is known of it any more.
   void remove_keyframe(KeyframeId keyframe);
 
   /// Makes a component part of another: its first keyframe becomes a child of `parent`, an older keyframe of the other.
@@ -135,6 +135,7 @@ class Map {
   const Keyframe& keyframe_at(KeyframeId id) const;
   Keyframe& keyframe_at(KeyframeId id);
   void adopt_child(KeyframeId parent, KeyframeId child);
+  void hand_on_origin(const Keyframe& origin);
   void change_covisibility(const Landmark& landmark, KeyframeId keyframe, int change);
   void refresh_appearance(Landmark& landmark);
 

@@ -1,0 +1,354 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/atlas/atlas_service.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "common/service/config.hpp"
+#include "common/service/monotonic_clock.hpp"
+#include "services/slam/map_file.hpp"
+#include "services/slam/slam_messages.hpp"
+
+namespace rtd::atlas {
+namespace {
+
+using service::ConfigError;
+
+constexpr std::chrono::milliseconds kTick{20};
+constexpr std::int64_t kSecondNs = 1'000'000'000, kPublishNs = kSecondNs / 2, kPointsNs = 2 * kSecondNs,
+                       kStraightenNs = kSecondNs / 2;
+constexpr std::int64_t kAskAgainNs = 2 * kSecondNs;  ///< what was asked for and has not come
+constexpr std::size_t kMostWaiting = 4096;
+/// A transform that has changed by less is the same.
+constexpr double kSame_m = 0.001, kSame_rad = 0.0005;
+
+/// Whose keyframes those of a map file are: a file next to it.
+std::filesystem::path owners_file(const std::string& map_file) {
+  return map_file + ".robots.json";
+}
+
+std::map<std::string, std::vector<KeyframeId>> read_owners(const std::string& map_file) {
+  std::ifstream in(owners_file(map_file));
+  if (!in) return {};
+  try {
+    return nlohmann::json::parse(in).get<std::map<std::string, std::vector<KeyframeId>>>();
+  } catch (const nlohmann::json::exception&) {
+    SPDLOG_WARN(
+        "event=owners_unreadable file={} cause=\"it is not JSON as atlas writes it\" effect=\"robots in this "
+        "map cannot be forgotten one by one\"",
+        owners_file(map_file).string());
+    return {};
+  }
+}
+
+Eigen::Isometry3d to_isometry(const msg::TransformStamped& stamped) {
+  const auto& [translation, rotation] = stamped.transform;
+  return msg::to_isometry(
+      {{translation.x, translation.y, translation.z}, {rotation.x, rotation.y, rotation.z, rotation.w}});
+}
+
+msg::TransformStamped to_stamped(const msg::Transform& T, std::int64_t stamp_ns, const std::string& parent,
+                                 const std::string& child) {
+  msg::TransformStamped stamped;
+  stamped.header = {msg::to_time(stamp_ns), parent};
+  stamped.child_frame_id = child;
+  const auto& t = T.translation_m;
+  const auto& q = T.rotation_xyzw;
+  stamped.transform = {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}};
+  return stamped;
+}
+
+}  // namespace
+
+void AtlasService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
+  app.footer(
+      "Robots need names: --robot NAME of their services. 'rtd atlas status' shows who is where.\n"
+      "Commands: rtd call /atlas/save [NAME], /atlas/load NAME, /atlas/forget ROBOT.\n"
+      "Example: rtd atlas --map building.rtdmap --profile lan");
+}
+
+AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
+    : config_(config),
+      runtime_(runtime),
+      atlas_(config.core),
+      maps_(config.maps_folder, {"map", ".rtdmap", slam::map_format::kMagic, "--maps-dir"}),
+      finder_(runtime.bus_options, bus::topics::kMap),
+      state_writer_(runtime.bus.writer(bus::topics::kAtlas)),
+      poses_writer_(runtime.bus.writer(bus::topics::kAtlasRobots)),
+      points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),
+      tf_writer_(runtime.bus.writer(bus::topics::kTfStatic)),
+      desk_(std::in_place, runtime.bus) {
+  if (!config_.map_file.empty() && std::filesystem::exists(config_.map_file)) load(config_.map_file);
+  using bus::CommandKind;
+  using bus::CommandRequest;
+  desk_->offer("atlas/save", CommandKind::kText,
+               [this](const CommandRequest& r) { return save_by_command(r.argument); });
+  desk_->offer("atlas/load", CommandKind::kText,
+               [this](const CommandRequest& r) { return load_by_command(r.argument); });
+  desk_->offer("atlas/forget", CommandKind::kText, [this](const CommandRequest& r) { return forget(r.argument); });
+}
+
+/// Readers end first: their callbacks use the rest.
+AtlasService::~AtlasService() {
+  desk_.reset();
+  lanes_.clear();
+}
+
+service::ExitCode AtlasService::run() {
+  checkpoint_ns_ = service::monotonic_ns();
+  while (!runtime_.stop.wait_for(kTick)) {
+    runtime_.heartbeat.tick();
+    find_robots();
+    for (const Arrival& arrival : take_arrivals()) take(arrival);
+    straighten();
+    for (auto& [robot, lane] : lanes_) ask(robot, lane);
+    desk_->serve();
+    publish();
+    checkpoint();
+  }
+  return finish();
+}
+
+void AtlasService::push(const std::string& robot, std::variant<Update, Features> message) {
+  const std::lock_guard lock(mutex_);
+  if (arrivals_.size() >= kMostWaiting) {
+    ++dropped_;
+    if (std::holds_alternative<Features>(message)) return;  // it is asked for again
+    arrivals_.pop_front();
+  }
+  arrivals_.push_back({robot, std::move(message)});
+}
+
+std::deque<AtlasService::Arrival> AtlasService::take_arrivals() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(arrivals_, {});
+}
+
+void AtlasService::find_robots() {
+  for (const std::string& robot : finder_.robots()) {
+    if (lanes_.contains(robot) || forgotten_.contains(robot)) continue;
+    try {
+      open_lane(robot);
+      SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);
+    } catch (const bus::BusError& error) {
+      if (robot_log_.pass()) SPDLOG_WARN("event=robot_refused robot=\"{}\" cause=\"{}\"", robot, error.what());
+    }
+  }
+}
+
+void AtlasService::open_lane(const std::string& robot) {
+  Lane lane;
+  lane.bus = runtime_.bus.of_robot(robot);
+  lane.requests = lane.bus->writer(bus::topics::kKeyframeRequest);
+  lane.submaps = lane.bus->writer(bus::topics::kSubmap);
+  lane.features = lane.bus->reader(bus::topics::kKeyframeFeatures,
+                                   [this, robot](Features message) { push(robot, std::move(message)); });
+  lane.updates =
+      lane.bus->reader(bus::topics::kMap, [this, robot](Update message) { push(robot, std::move(message)); });
+  lanes_.emplace(robot, std::move(lane));
+}
+
+void AtlasService::take(const Arrival& arrival) {
+  if (const auto* update = std::get_if<Update>(&arrival.message)) {
+    atlas_->follow(arrival.robot, **update);
+    return;
+  }
+  const msg::KeyframeFeatures& features = *std::get<Features>(arrival.message);
+  if (features.keyframe_id == msg::kNoId) {
+    answer_query(arrival.robot, features);
+    return;
+  }
+  const std::uint64_t meetings = atlas_->counters().meetings;
+  if (atlas_->add(arrival.robot, features)) {
+    if (const auto lane = lanes_.find(arrival.robot); lane != lanes_.end() && lane->second.waiting_for > 0)
+      --lane->second.waiting_for;
+  }
+  if (atlas_->counters().meetings > meetings) SPDLOG_INFO("event=meeting robot=\"{}\"", arrival.robot);
+}
+
+/// More only once the last have come, or do not come.
+void AtlasService::ask(const std::string& robot, Lane& lane) {
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (now_ns - lane.asked_ns < (lane.waiting_for > 0 ? kAskAgainNs : kPublishNs)) return;
+  lane.asked_ns = now_ns;
+  const msg::KeyframeRequest request = atlas_->missing(robot, static_cast<std::size_t>(config_.request_keyframes));
+  lane.waiting_for = request.keyframe_ids.size();
+  if (lane.waiting_for > 0) lane.requests.write(request);
+}
+
+void AtlasService::answer_query(const std::string& robot, const msg::KeyframeFeatures& query) {
+  ++asked_where_;
+  const auto lane = lanes_.find(robot);
+  if (lane == lanes_.end()) return;
+  const std::optional<msg::Submap> submap = atlas_->locate(query);
+  if (!submap) return;
+  ++located_;
+  lane->second.submaps.write(*submap);
+  if (query_log_.pass()) SPDLOG_INFO("event=located robot=\"{}\" submap_bytes={}", robot, submap->file.size());
+}
+
+void AtlasService::straighten() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (now_ns - straightened_ns_ < kStraightenNs) return;
+  const std::uint64_t refused = atlas_->counters().refused;
+  atlas_->straighten();
+  straightened_ns_ = service::monotonic_ns();
+  if (atlas_->counters().refused > refused)
+    SPDLOG_WARN("event=meeting_refused cause=\"it contradicts what other robots have measured\"");
+}
+
+void AtlasService::publish() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (now_ns - published_ns_ < kPublishNs) return;
+  published_ns_ = now_ns;
+  msg::AtlasState state = atlas_->state();
+  state.stamp_ns = service::realtime_ns();
+  state_writer_.write(state);
+  msg::PoseArray poses;
+  poses.header = {msg::to_time(state.stamp_ns), config_.map_frame};
+  for (const msg::AtlasRobot& robot : state.robots) {
+    if (!robot.met) continue;
+    const auto& t = robot.T_map_camera.translation_m;
+    const auto& q = robot.T_map_camera.rotation_xyzw;
+    poses.poses.push_back({{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}});
+  }
+  poses_writer_.write(poses);
+  publish_transforms(state);
+  publish_points();
+  report(state);
+}
+
+/// One message with all of them whenever one changes: a late reader gets the newest message.
+void AtlasService::publish_transforms(const msg::AtlasState& state) {
+  bool changed = false;
+  for (const msg::AtlasRobot& robot : state.robots) {
+    if (!robot.met || robot.name.empty()) continue;
+    msg::TransformStamped now =
+        to_stamped(robot.T_map_robot, state.stamp_ns, config_.map_frame, bus::frame_of_robot("map", robot.name));
+    const auto before = transforms_.find(robot.name);
+    if (before != transforms_.end()) {
+      const Eigen::Isometry3d T = to_isometry(before->second).inverse() * to_isometry(now);
+      if (T.translation().norm() < kSame_m && geometry::rotation_angle_rad(T) < kSame_rad) continue;
+    }
+    transforms_[robot.name] = std::move(now);
+    changed = true;
+  }
+  if (!changed) return;
+  msg::TFMessage message;
+  for (const auto& [robot, transform] : transforms_) message.transforms.push_back(transform);
+  tf_writer_.write(message);
+}
+
+void AtlasService::publish_points() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  const AtlasCounters& counters = atlas_->counters();
+  if (points_writer_.matched() == 0 || now_ns - points_ns_ < kPointsNs ||
+      (counters.keyframes == shown_keyframes_ && counters.corrections == shown_corrections_))
+    return;
+  points_ns_ = now_ns;
+  shown_keyframes_ = counters.keyframes;
+  shown_corrections_ = counters.corrections;
+  points_writer_.write(slam::make_cloud(atlas_->points(), service::realtime_ns(), config_.map_frame));
+}
+
+void AtlasService::report(const msg::AtlasState& state) {
+  const auto met = std::ranges::count_if(state.robots, &msg::AtlasRobot::met);
+  service::Heartbeat& heartbeat = runtime_.heartbeat;
+  heartbeat.set_metric("robots", static_cast<double>(state.robots.size()));
+  heartbeat.set_metric("robots_met", static_cast<double>(met));
+  heartbeat.set_metric("keyframes", static_cast<double>(atlas_->map().keyframes().size()));
+  heartbeat.set_metric("landmarks", static_cast<double>(atlas_->map().landmark_count()));
+  heartbeat.set_metric("meetings", static_cast<double>(atlas_->counters().meetings));
+  heartbeat.set_metric("meetings_refused", static_cast<double>(atlas_->counters().refused));
+  heartbeat.set_metric("corrections", static_cast<double>(atlas_->counters().corrections));
+  heartbeat.set_metric("located", static_cast<double>(located_));
+  heartbeat.set_metric("asked_where", static_cast<double>(asked_where_));
+  const std::string message = fmt::format("{} of {} robots in the joint map", met, state.robots.size());
+  if (!trouble_.empty()) {
+    heartbeat.set_state(msg::ServiceState::kDegraded, trouble_);
+  } else {
+    heartbeat.set_state(state.robots.empty() ? msg::ServiceState::kReady : msg::ServiceState::kRunning, message);
+  }
+}
+
+void AtlasService::load(const std::string& file) {
+  slam::MapContents contents = slam::load_map_file(file);
+  const std::size_t keyframes = contents.keyframes.size();
+  atlas_.emplace(config_.core);
+  atlas_->restore(std::move(contents), read_owners(file));
+  saved_keyframes_ = saved_corrections_ = 0;
+  SPDLOG_INFO("event=map_loaded file={} keyframes={}", file, keyframes);
+}
+
+/// The owners are written second: those of keyframes that are not in a map are passed over.
+bus::CommandAnswer AtlasService::save(const std::string& file, io::NamedBy named_by) {
+  slam::MapContents contents = atlas_->contents();
+  const std::size_t keyframes = contents.keyframes.size();
+  if (keyframes == 0) return {false, "nothing has been mapped yet"};
+  const std::uint64_t bytes = slam::save_map_file(file, slam::take_snapshot(slam::Map(std::move(contents))), named_by);
+  io::write_file(owners_file(file), nlohmann::json(atlas_->owners()).dump(), {.named_by = named_by});
+  return {true,
+          fmt::format("{} keyframes, {:.1f} MB, saved to {}", keyframes, static_cast<double>(bytes) * 1e-6, file)};
+}
+
+bus::CommandAnswer AtlasService::save_by_command(const std::string& name) {
+  if (name.empty() && config_.map_file.empty()) return {false, "name a map: atlas was started without --map"};
+  return name.empty() ? save(config_.map_file, io::NamedBy::kOperator)
+                      : save(maps_.to_write(name).string(), io::NamedBy::kProgram);
+}
+
+/// Robots tell all they have once more to readers that are new.
+bus::CommandAnswer AtlasService::load_by_command(const std::string& name) {
+  if (name.empty() && config_.map_file.empty()) return {false, "name a map: atlas was started without --map"};
+  load(name.empty() ? config_.map_file : maps_.to_read(name).string());
+  lanes_.clear();
+  transforms_.clear();
+  return {true, fmt::format("{} keyframes loaded", atlas_->map().keyframes().size())};
+}
+
+bus::CommandAnswer AtlasService::forget(const std::string& robot) {
+  const std::size_t gone = atlas_->forget(robot);
+  if (gone == 0) return {false, "no keyframe of a robot \"" + robot + "\" is in the joint map"};
+  lanes_.erase(robot);
+  transforms_.erase(robot);
+  forgotten_.insert(robot);
+  SPDLOG_INFO("event=robot_forgotten robot=\"{}\" keyframes={}", robot, gone);
+  return {true, fmt::format("{} keyframes of {} forgotten; it is ignored until atlas is started again", gone, robot)};
+}
+
+void AtlasService::checkpoint() {
+  const std::int64_t now_ns = service::monotonic_ns();
+  const AtlasCounters& counters = atlas_->counters();
+  if (config_.map_file.empty() || now_ns - checkpoint_ns_ < config_.checkpoint_s * kSecondNs ||
+      (counters.keyframes == saved_keyframes_ && counters.corrections == saved_corrections_))
+    return;
+  try {
+    save(config_.map_file, io::NamedBy::kOperator);
+    saved_keyframes_ = counters.keyframes;
+    saved_corrections_ = counters.corrections;
+    trouble_.clear();
+  } catch (const std::exception& error) {
+    trouble_ = error.what();
+    SPDLOG_ERROR("event=map_not_saved cause=\"{}\"", trouble_);
+  }
+  checkpoint_ns_ = service::monotonic_ns();
+}
+
+service::ExitCode AtlasService::finish() {
+  desk_->close();
+  checkpoint_ns_ = -config_.checkpoint_s * kSecondNs;
+  checkpoint();
+  const AtlasCounters& counters = atlas_->counters();
+  SPDLOG_INFO("event=summary keyframes={} meetings={} refused={} corrections={} located={} dropped={}",
+              counters.keyframes, counters.meetings, counters.refused, counters.corrections, located_, dropped_);
+  return trouble_.empty() ? service::kOk : service::kRunFailed;
+}
+
+}  // namespace rtd::atlas

@@ -1,0 +1,373 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/atlas/core/atlas.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <ranges>
+
+#include "common/geometry/se3.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "services/atlas/core/submap.hpp"
+#include "services/slam/core/loop/essential_graph.hpp"
+
+namespace rtd::atlas {
+
+using slam::Keyframe;
+using slam::kNoKeyframe;
+using slam::kNoLandmark;
+using slam::Landmark;
+
+namespace {
+
+/// A correction by the robot of less than this does not show in the joint map.
+constexpr double kMoved_m = 0.01, kMoved_rad = 0.005;
+/// What a robot sees as one of its landmarks lies no farther from it than this, unless the map it belongs to is
+/// another.
+constexpr double kSameLandmark_m = 0.3;
+
+/// How a robot's map drifts away from the joint map on the way since their last meeting.
+constexpr double kDrift = 0.01, kDriftRadPerM = 0.002;
+
+bool has_moved(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_now) {
+  const Eigen::Isometry3d T = T_before.inverse() * T_now;
+  return T.translation().norm() > kMoved_m || geometry::rotation_angle_rad(T) > kMoved_rad;
+}
+
+}  // namespace
+
+Atlas::Atlas(AtlasConfig config)
+    : config_(std::move(config)),
+      vocabulary_(config_.slam.place.vocabulary ? config_.slam.place.vocabulary : slam::built_in_vocabulary()) {}
+
+void Atlas::restore(slam::MapContents contents, const std::map<std::string, std::vector<KeyframeId>>& owners) {
+  map_ = slam::Map(std::move(contents));
+  for (const MapId component : map_.maps()) worlds_[component] = component;
+  for (const auto& [id, keyframe] : map_.keyframes()) {
+    places_.add(id, vocabulary_->describe(keyframe.frame->features));
+    sources_[id] = {};
+    by_stamp_.emplace(keyframe.frame->stamp_ns, id);
+  }
+  for (const auto& [robot, keyframes] : owners)
+    for (const KeyframeId id : keyframes)
+      if (const auto source = sources_.find(id); source != sources_.end()) source->second.robot = robot;
+  sort_into_cells();
+}
+
+slam::MapContents Atlas::contents() const {
+  std::vector<KeyframeId> keyframes;
+  for (const auto& [id, keyframe] : map_.keyframes())
+    if (is_joined(id)) keyframes.push_back(id);
+  return take_part(map_, keyframes, KeptFeatures::kAll);
+}
+
+std::map<std::string, std::vector<KeyframeId>> Atlas::owners() const {
+  std::map<std::string, std::vector<KeyframeId>> owners;
+  for (const auto& [id, source] : sources_) owners[source.robot].push_back(id);
+  return owners;
+}
+
+bool Atlas::is_joined(KeyframeId keyframe) const {
+  return !worlds_.empty() && world_of(keyframe) == worlds_.begin()->second;
+}
+
+/// A keyframe that is here already: of this robot, before its map or this process began again, or of the map that the
+/// robot was given and that has the same ids.
+KeyframeId Atlas::find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const {
+  const auto [first, last] = by_stamp_.equal_range(stamp_ns);
+  for (auto it = first; it != last; ++it)
+    if (it->second == id || sources_.at(it->second).robot == robot) return it->second;
+  return kNoKeyframe;
+}
+
+void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
+  Robot& robot = robots_[name];
+  if (robot.session_ns != update.session_ns) {
+    const std::uint32_t meetings = robot.meetings;
+    robot = {};
+    robot.session_ns = update.session_ns;
+    robot.meetings = meetings;
+  }
+  for (const msg::MapKeyframe& entry : update.keyframes) {
+    const auto known = robot.keyframes.find(entry.keyframe_id);
+    if ((entry.content & msg::kMapRemoved) != 0) {
+      if (known == robot.keyframes.end()) continue;
+      const auto source = sources_.find(known->second.keyframe);
+      if (source != sources_.end() && source->second.robot == name) drop(source->first);
+      robot.keyframes.erase(known);
+      continue;
+    }
+    Announced& announced = robot.keyframes[entry.keyframe_id];
+    const Eigen::Isometry3d T_before = announced.T_robot_camera;
+    announced.T_robot_camera = msg::to_isometry(entry.T_world_camera);
+    announced.stamp_ns = entry.stamp_ns;
+    announced.map = entry.map_id;
+    if ((entry.content & msg::kMapEdges) != 0) announced.covisible = entry.covisible;
+    if (known == robot.keyframes.end()) {
+      announced.keyframe = find_known(name, entry.keyframe_id, entry.stamp_ns);
+    } else if (map_.find_keyframe(announced.keyframe) != nullptr && has_moved(T_before, announced.T_robot_camera)) {
+      crooked_[world_of(announced.keyframe)] = name;
+    }
+  }
+}
+
+const Atlas::Announced* Atlas::newest_known(const Robot& robot) const {
+  for (const auto& [id, announced] : robot.keyframes | std::views::reverse)
+    if (map_.find_keyframe(announced.keyframe) != nullptr) return &announced;
+  return nullptr;
+}
+
+/// Whether newer keyframes do not show the same place already.
+bool Atlas::is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const {
+  const auto cell = cells_.find(cell_of(world, T_world_robot * announced.T_robot_camera));
+  if (cell == cells_.end()) return true;
+  const auto newer = std::ranges::count_if(
+      cell->second, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns > announced.stamp_ns; });
+  return newer < config_.cell_keyframes;
+}
+
+msg::KeyframeRequest Atlas::missing(const std::string& name, std::size_t limit) const {
+  const auto it = robots_.find(name);
+  if (it == robots_.end()) return {};
+  const Robot& robot = it->second;
+  msg::KeyframeRequest request;
+  request.session_ns = robot.session_ns;
+  const Announced* newest = newest_known(robot);
+  int newer = 0;
+  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
+    if (newer++ < config_.settled_after || map_.find_keyframe(announced.keyframe) != nullptr) continue;
+    if (newest != nullptr) {
+      const Keyframe& known = *map_.find_keyframe(newest->keyframe);
+      const Eigen::Isometry3d T_world_robot = known.T_world_camera * newest->T_robot_camera.inverse();
+      if (!is_wanted(announced, T_world_robot, worlds_.at(known.map))) continue;
+    }
+    if (request.keyframe_ids.size() == limit) break;
+    request.keyframe_ids.push_back(id);
+  }
+  return request;
+}
+
+/// The keyframe that a new one is placed by: one that sees much of the same, else the one before, else the one after.
+const Atlas::Announced* Atlas::choose_parent(const Robot& robot, KeyframeId id) const {
+  const auto own = robot.keyframes.find(id);
+  const auto is_here = [&](const Announced& other) {
+    return other.map == own->second.map && map_.find_keyframe(other.keyframe) != nullptr;
+  };
+  for (const KeyframeId neighbour : own->second.covisible | std::views::reverse) {
+    const auto other = robot.keyframes.find(neighbour);
+    if (other != robot.keyframes.end() && is_here(other->second)) return &other->second;
+  }
+  for (auto it = own; it != robot.keyframes.begin();)
+    if (is_here((--it)->second)) return &it->second;
+  for (auto it = std::next(own); it != robot.keyframes.end(); ++it)
+    if (is_here(it->second)) return &it->second;
+  return nullptr;
+}
+
+bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
+  const auto found = robots_.find(name);
+  if (found == robots_.end() || message.session_ns != found->second.session_ns) return false;
+  Robot& robot = found->second;
+  const auto own = robot.keyframes.find(message.keyframe_id);
+  if (own == robot.keyframes.end() || own->second.stamp_ns != message.stamp_ns) return false;
+  Announced& announced = own->second;
+  if (map_.find_keyframe(announced.keyframe) != nullptr) return false;
+  std::vector<std::uint32_t> kept;
+  const slam::FramePtr frame = to_frame(message, kept);
+  if (frame == nullptr) {
+    ++counters_.broken;
+    return false;
+  }
+  const Announced* parent = choose_parent(robot, message.keyframe_id);
+  Eigen::Isometry3d T_world_camera = announced.T_robot_camera;
+  if (parent != nullptr) {
+    const Eigen::Isometry3d T_parent_camera = parent->T_robot_camera.inverse() * announced.T_robot_camera;
+    T_world_camera = geometry::normalized(map_.find_keyframe(parent->keyframe)->T_world_camera * T_parent_camera);
+    robot.way_m += T_parent_camera.translation().norm();
+  }
+  announced.keyframe = map_.add_keyframe(frame, T_world_camera, parent == nullptr ? kNoKeyframe : parent->keyframe);
+  const Keyframe& keyframe = *map_.find_keyframe(announced.keyframe);
+  worlds_.try_emplace(keyframe.map, keyframe.map);
+  sources_[keyframe.id] = {name, message.keyframe_id};
+  by_stamp_.emplace(message.stamp_ns, keyframe.id);
+  places_.add(keyframe.id, vocabulary_->describe(frame->features));
+  for (std::uint32_t i = 0; i < kept.size(); ++i)
+    see_landmark(robot, keyframe, i, message.features[kept[i]].landmark_id);
+  for (const LandmarkId id : keyframe.landmarks)
+    if (id != kNoLandmark) map_.refresh_landmark(id);
+  ++counters_.keyframes;
+  look_for_meeting(name, robot, keyframe.id);
+  give_way(keyframe.id);
+  return true;
+}
+
+void Atlas::see_landmark(Robot& robot, const Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id) {
+  if (robot_id == msg::kNoId || !(keyframe.frame->features[feature].depth_m > 0)) return;
+  const Eigen::Vector3d p_world = keyframe.T_world_camera * keyframe.frame->unproject(feature);
+  const auto [it, is_new] = robot.landmarks.try_emplace(robot_id, kNoLandmark);
+  const Landmark* landmark = map_.find_landmark(it->second);
+  if (landmark != nullptr && (landmark->position - p_world).norm() < kSameLandmark_m) {
+    map_.add_observation(it->second, {keyframe.id, feature});
+  } else {
+    it->second = map_.add_landmark(p_world, {keyframe.id, feature});
+    map_.find_landmark(it->second)->witness = true;
+  }
+}
+
+Atlas::Cell Atlas::cell_of(MapId world, const Eigen::Isometry3d& T_world_camera) const {
+  constexpr double kSectors = 8;  // of viewing directions, each way round
+  const auto part = [](double value, double size) { return static_cast<int>(std::floor(value / size)); };
+  const Eigen::Vector3d place = T_world_camera.translation(), view = T_world_camera.linear().col(2);
+  constexpr double kSector_rad = 2 * std::numbers::pi / kSectors;
+  return {static_cast<int>(world),
+          part(place.x(), config_.cell_m),
+          part(place.y(), config_.cell_m),
+          part(place.z(), config_.cell_m),
+          part(std::atan2(view.y(), view.x()), kSector_rad),
+          part(std::acos(std::clamp(view.z(), -1.0, 1.0)), kSector_rad)};
+}
+
+void Atlas::sort_into_cells() {
+  cells_.clear();
+  for (const auto& [id, keyframe] : map_.keyframes())
+    cells_[cell_of(world_of(id), keyframe.T_world_camera)].push_back(id);
+}
+
+/// Of one place the newest keyframes stay: what was there before has changed, or is said once more.
+void Atlas::give_way(KeyframeId newest) {
+  const Keyframe& keyframe = *map_.find_keyframe(newest);
+  std::vector<KeyframeId>& cell = cells_[cell_of(worlds_.at(keyframe.map), keyframe.T_world_camera)];
+  cell.push_back(newest);
+  if (static_cast<int>(cell.size()) <= config_.cell_keyframes) return;
+  const KeyframeId oldest =
+      *std::ranges::min_element(cell, {}, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns; });
+  ++counters_.given_way;
+  drop(oldest);
+}
+
+void Atlas::drop(KeyframeId id) {
+  const Keyframe& keyframe = *map_.find_keyframe(id);
+  const KeyframeId heir = !keyframe.is_origin()        ? keyframe.parent
+                          : !keyframe.children.empty() ? keyframe.children.front()
+                                                       : kNoKeyframe;
+  if (heir != kNoKeyframe) {  // what met this keyframe has met the heir
+    const Eigen::Isometry3d T_keyframe_heir =
+        keyframe.T_world_camera.inverse() * map_.find_keyframe(heir)->T_world_camera;
+    for (Meeting& meeting : meetings_) {
+      if (meeting.place == id) {
+        meeting.place = heir;
+        meeting.T_place_keyframe = T_keyframe_heir.inverse() * meeting.T_place_keyframe;
+      } else if (meeting.keyframe == id) {
+        meeting.keyframe = heir;
+        meeting.T_place_keyframe = meeting.T_place_keyframe * T_keyframe_heir;
+      }
+    }
+  }
+  std::erase_if(meetings_, [&](const Meeting& meeting) {
+    return meeting.place == id || meeting.keyframe == id || meeting.place == meeting.keyframe;
+  });
+  std::vector<KeyframeId>& cell = cells_[cell_of(world_of(id), keyframe.T_world_camera)];
+  std::erase(cell, id);
+  const auto [first, last] = by_stamp_.equal_range(keyframe.frame->stamp_ns);
+  by_stamp_.erase(std::find_if(first, last, [&](const auto& entry) { return entry.second == id; }));
+  places_.remove(id);
+  sources_.erase(id);
+  map_.forget_removed(0);
+  map_.remove_keyframe(id);
+}
+
+std::size_t Atlas::forget(const std::string& name) {
+  std::vector<KeyframeId> gone;
+  for (const auto& [id, source] : sources_)
+    if (source.robot == name) gone.push_back(id);
+  for (const KeyframeId id : gone) drop(id);
+  robots_.erase(name);
+  std::erase_if(worlds_, [&](const auto& world) { return map_.keyframe_count(world.first) == 0; });
+  return gone.size();
+}
+
+std::optional<msg::Submap> Atlas::locate(const msg::KeyframeFeatures& message) const {
+  std::vector<std::uint32_t> kept;
+  const slam::FramePtr frame = to_frame(message, kept);
+  if (frame == nullptr) return std::nullopt;
+  slam::PlaceQuery query;
+  query.admitted = [&](KeyframeId id) { return is_joined(id); };
+  query.max_candidates = static_cast<std::size_t>(config_.slam.place.candidates);
+  const slam::BagOfWords bag = vocabulary_->describe(frame->features);
+  for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, bag, query)) {
+    const auto meeting = slam::meet_place(map_, *frame, candidate.keyframe, config_.slam);
+    if (!meeting) continue;
+    const io::Bytes file =
+        to_map_file(take_part(map_, around(meeting->place, meeting->T_world_camera), KeptFeatures::kOfLandmarks));
+    msg::Submap submap{message.stamp_ns, msg::to_message(meeting->T_world_camera), {}};
+    submap.file.resize(file.size());
+    std::ranges::transform(file, submap.file.begin(),
+                           [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+    return submap;
+  }
+  return std::nullopt;
+}
+
+/// The keyframes that see about the same from about there, ascending.
+std::vector<KeyframeId> Atlas::around(KeyframeId place, const Eigen::Isometry3d& T_world_camera) const {
+  std::vector<std::pair<double, KeyframeId>> near;
+  for (const auto& [id, keyframe] : map_.keyframes()) {
+    if (!is_joined(id) || id == place) continue;
+    const Eigen::Isometry3d T = T_world_camera.inverse() * keyframe.T_world_camera;
+    near.emplace_back(T.translation().norm() + geometry::rotation_angle_rad(T), id);
+  }
+  std::ranges::sort(near);
+  std::vector<KeyframeId> keyframes{place};
+  for (const auto& [distance, id] : near) {
+    if (static_cast<int>(keyframes.size()) == config_.submap_keyframes) break;
+    keyframes.push_back(id);
+  }
+  std::ranges::sort(keyframes);
+  return keyframes;
+}
+
+std::vector<std::string> Atlas::robots() const {
+  std::vector<std::string> names;
+  for (const auto& [name, robot] : robots_) names.push_back(name);
+  return names;
+}
+
+std::vector<slam::MapPoint> Atlas::points() const {
+  std::vector<slam::MapPoint> points;
+  const std::vector<LandmarkId> landmarks = map_.landmark_ids();
+  for (const auto& [component, world] : worlds_)
+    if (world == worlds_.begin()->second) slam::append_map_points(map_, component, landmarks, points);
+  return points;
+}
+
+msg::AtlasState Atlas::state() const {
+  std::map<std::string, std::uint32_t> kept;
+  for (const auto& [id, source] : sources_) ++kept[source.robot];
+  msg::AtlasState state;
+  state.corrections = counters_.corrections;
+  for (const auto& [name, robot] : robots_) {
+    msg::AtlasRobot& entry = state.robots.emplace_back();
+    entry.name = name;
+    entry.keyframes = kept[name];
+    entry.missing = static_cast<std::uint32_t>(missing(name, robot.keyframes.size()).keyframe_ids.size());
+    entry.meetings = robot.meetings;
+    entry.T_map_robot = entry.T_map_camera = msg::to_message(Eigen::Isometry3d::Identity());
+    const Announced* newest = newest_known(robot);
+    if (newest == nullptr || !is_joined(newest->keyframe)) continue;
+    const Eigen::Isometry3d T_map_robot =
+        map_.find_keyframe(newest->keyframe)->T_world_camera * newest->T_robot_camera.inverse();
+    const Announced& last = robot.keyframes.rbegin()->second;
+    entry.met = true;
+    entry.stamp_ns = last.stamp_ns;
+    entry.T_map_robot = msg::to_message(geometry::normalized(T_map_robot));
+    entry.T_map_camera = msg::to_message(geometry::normalized(T_map_robot * last.T_robot_camera));
+    const slam::PoseGraphEdge edge = slam::meeting_edge(0, 0, T_map_robot);
+    const double way_m = robot.way_m - robot.way_at_meeting_m;
+    const double sigma_m = edge.sigma_m + kDrift * way_m, sigma_rad = edge.sigma_rad + kDriftRadPerM * way_m;
+    for (std::size_t i = 0; i < 6; ++i) entry.covariance[7 * i] = i < 3 ? sigma_m * sigma_m : sigma_rad * sigma_rad;
+  }
+  return state;
+}
+
+}  // namespace rtd::atlas

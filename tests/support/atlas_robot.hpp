@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "common/msg/atlas.hpp"
+#include "common/msg/transform_eigen.hpp"
+#include "services/atlas/core/atlas.hpp"
+#include "services/slam/core/slam_system.hpp"
+#include "services/slam/core/store/map_store.hpp"
+#include "services/slam/map_publisher.hpp"
+#include "tests/support/feature_world.hpp"
+#include "tests/support/settled_map.hpp"
+
+namespace rtd::test_support {
+
+/// A keyframe as slam sends it.
+inline msg::KeyframeFeatures features_of(const slam::Map& map, slam::KeyframeId id, std::int64_t session_ns) {
+  const slam::Keyframe& keyframe = *map.find_keyframe(id);
+  const slam::Frame& frame = *keyframe.frame;
+  msg::KeyframeFeatures message;
+  message.session_ns = session_ns;
+  message.keyframe_id = id;
+  message.stamp_ns = frame.stamp_ns;
+  message.intrinsics = {frame.camera.fx, frame.camera.fy, frame.camera.cx, frame.camera.cy};
+  message.disparity_px_m = frame.camera.disparity_px_m;
+  message.width = static_cast<std::uint32_t>(frame.width_px);
+  message.height = static_cast<std::uint32_t>(frame.height_px);
+  for (std::size_t i = 0; i < frame.features.size(); ++i) {
+    const msg::Feature& f = frame.features[i];
+    const slam::LandmarkId landmark = keyframe.landmarks[i];
+    const bool settled = landmark != slam::kNoLandmark && slam::has_measured_depth(*map.find_landmark(landmark));
+    message.features.push_back({f.u_px, f.v_px, f.depth_m, f.angle_rad, settled ? landmark : msg::kNoId,
+                                f.static_probability, f.octave, f.flags, f.descriptor});
+  }
+  return message;
+}
+
+/// A frame whose place is asked for.
+inline msg::KeyframeFeatures query_of(const msg::FeatureFrame& message) {
+  slam::SlamConfig config;
+  const slam::FramePtr frame = slam::make_frame(message, config.sensor).frame;
+  slam::Map map;
+  msg::KeyframeFeatures query =
+      features_of(map, map.add_keyframe(frame, Eigen::Isometry3d::Identity(), slam::kNoKeyframe), 0);
+  query.keyframe_id = msg::kNoId;
+  return query;
+}
+
+inline slam::MapContents map_of(const msg::Submap& submap) {
+  return slam::read_map(io::MemorySource(std::as_bytes(std::span(submap.file))));
+}
+
+/// A robot that walks through a FeatureWorld, and what its slam tells an atlas.
+class AtlasRobot {
+ public:
+  AtlasRobot(std::string name, const FeatureWorld& world, std::uint64_t first_seq)
+      : name_(std::move(name)), world_(world), first_(first_seq), slam_(make_slam()) {}
+
+  /// The true pose of its map's frame in that of the world, for a robot that began with a map of its own.
+  Eigen::Isometry3d T_world_map() const { return FeatureWorld::T_world_camera(first_) * T_map_first_.inverse(); }
+  /// In the world, of the camera at one of its stamps.
+  Eigen::Isometry3d T_world_camera(std::int64_t stamp_ns) const {
+    constexpr double kPeriodNs = 33'333'333;
+    const auto since_ns = static_cast<double>(stamp_ns - FeatureWorld::stamp_ns(0)) - static_cast<double>(first_);
+    return FeatureWorld::T_world_camera(static_cast<std::uint64_t>(std::llround(since_ns / kPeriodNs)));
+  }
+  const std::string& name() const { return name_; }
+  slam::SlamSystem& slam() { return slam_; }
+  std::int64_t session_ns = 1;
+
+  /// `frames` more, each told to the atlas at once.
+  void walk(int frames, atlas::Atlas& atlas) {
+    for (int i = 0; i < frames; ++i) {
+      const std::uint64_t seq = first_ + seen_++;
+      const auto frame = world_.view(seq, FeatureWorld::T_world_camera(seq));
+      frame->stamp_ns += static_cast<std::int64_t>(first_);  // robots have clocks of their own
+      const slam::SlamOutput output = slam_.process(*frame);
+      if (seen_ == 1) T_map_first_ = output.result.T_world_camera;
+      if (seen_ % 15 == 0) tell(atlas);
+    }
+  }
+  /// What is new, and what it is asked for.
+  void tell(atlas::Atlas& atlas) {
+    const slam::MapView view = slam_.map_view();
+    const slam::MapNews news = changes_.update(view);
+    for (msg::MapUpdate& update : slam::make_map_updates(view, news)) {
+      update.session_ns = session_ns;
+      update.revision = ++revision_;
+      atlas.follow(name_, update);
+    }
+    for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids)
+      atlas.add(name_, slam_.read_map([&](const slam::Map& map) { return features_of(map, id, session_ns); }));
+    atlas.straighten();
+  }
+  void forget_told() { changes_.forget(); }
+
+ private:
+  static slam::SlamSystem make_slam() {
+    slam::SlamConfig config = settled();
+    config.sensor.calibration_error = 0;
+    return {config, slam::MappingMode::kSynchronous, frozen_clock};
+  }
+
+  std::string name_;
+  const FeatureWorld& world_;
+  std::uint64_t first_, seen_ = 0, revision_ = 0;
+  slam::SlamSystem slam_;
+  slam::MapChanges changes_;
+  Eigen::Isometry3d T_map_first_ = Eigen::Isometry3d::Identity();
+};
+
+inline const msg::AtlasRobot& robot_in(const msg::AtlasState& state, const std::string& name) {
+  for (const msg::AtlasRobot& robot : state.robots)
+    if (robot.name == name) return robot;
+  throw std::out_of_range(name);
+}
+
+}  // namespace rtd::test_support

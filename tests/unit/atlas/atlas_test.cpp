@@ -1,0 +1,162 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#include "services/atlas/core/atlas.hpp"
+
+#include <gmock/gmock.h>
+
+#include "common/geometry/se3.hpp"
+#include "services/atlas/core/submap.hpp"
+#include "services/slam/core/store/map_store.hpp"
+#include "tests/support/atlas_robot.hpp"
+
+namespace rtd::atlas {
+namespace {
+
+using test_support::AtlasRobot;
+using test_support::FeatureWorld;
+using test_support::map_of;
+using test_support::query_of;
+using test_support::robot_in;
+
+/// Where the atlas has a robot in the frame of the first one, m from where it is.
+double error_m(const Atlas& atlas, const AtlasRobot& first, const AtlasRobot& robot) {
+  const msg::AtlasState state = atlas.state();
+  const msg::AtlasRobot& entry = robot_in(state, robot.name());
+  if (!entry.met) return 1e9;
+  const Eigen::Isometry3d truth = first.T_world_map().inverse() * robot.T_world_camera(entry.stamp_ns);
+  return (msg::to_isometry(entry.T_map_camera).inverse() * truth).translation().norm();
+}
+
+TEST(Atlas, robots_in_one_room_meet) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 250);
+  anna.walk(150, atlas);
+  EXPECT_TRUE(robot_in(atlas.state(), "anna").met) << "the first one makes the frame";
+  bert.walk(150, atlas);
+  const msg::AtlasState state = atlas.state();
+  EXPECT_TRUE(robot_in(state, "bert").met);
+  EXPECT_GE(robot_in(state, "bert").meetings, 1U);
+  EXPECT_LT(error_m(atlas, anna, bert), 0.01);
+  EXPECT_EQ(atlas.map().check_invariants(), "");
+}
+
+TEST(Atlas, robots_in_other_rooms_do_not) {
+  const FeatureWorld world = FeatureWorld::noisy(1), other = FeatureWorld::noisy(2);
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", other, 250);
+  anna.walk(150, atlas);
+  bert.walk(150, atlas);
+  EXPECT_FALSE(robot_in(atlas.state(), "bert").met);
+  EXPECT_EQ(atlas.counters().meetings, 0U);
+}
+
+TEST(Atlas, a_robot_that_starts_anywhere_gets_the_map_around_it) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 300);
+  anna.walk(300, atlas);
+  for (const std::uint64_t seq : {310U, 333U, 371U, 402U}) {
+    const auto submap = atlas.locate(query_of(*world.view(seq)));
+    ASSERT_TRUE(submap) << seq;
+    const Eigen::Isometry3d truth = anna.T_world_map().inverse() * FeatureWorld::T_world_camera(seq);
+    EXPECT_LT((msg::to_isometry(submap->T_map_camera).inverse() * truth).translation().norm(), 0.02) << seq;
+  }
+  bert.slam().load_map(map_of(*atlas.locate(query_of(*world.view(300)))));
+  bert.walk(90, atlas);
+  EXPECT_LT(error_m(atlas, anna, bert), 0.02);
+  EXPECT_EQ(atlas.counters().meetings, 0U) << "it is in the joint map without one";
+  EXPECT_FALSE(atlas.locate(query_of(*FeatureWorld::noisy(2).view(10)))) << "another room";
+}
+
+TEST(Atlas, a_robot_can_be_taken_out_with_all_it_brought) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 250), carl("carl", world, 120);
+  for (AtlasRobot* robot : {&anna, &bert, &carl}) robot->walk(250, atlas);
+  const std::uint32_t others = robot_in(atlas.state(), "bert").keyframes + robot_in(atlas.state(), "carl").keyframes;
+  EXPECT_GT(atlas.forget("anna"), 0U) << "also the one that made the frame";
+  EXPECT_EQ(atlas.map().keyframes().size(), others);
+  EXPECT_EQ(atlas.map().check_invariants(), "");
+  EXPECT_LT(error_m(atlas, anna, bert), 0.01) << "the frame stays";
+  EXPECT_LT(error_m(atlas, anna, carl), 0.01);
+  EXPECT_EQ(atlas.forget("nobody"), 0U);
+}
+
+TEST(Atlas, a_map_that_was_saved_goes_on_with_the_same_robots) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas before({});
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 250);
+  anna.walk(150, before);
+  bert.walk(150, before);
+  const io::Bytes file = to_map_file(before.contents());
+  Atlas after({});
+  after.restore(slam::read_map(io::MemorySource(file)), before.owners());
+  EXPECT_EQ(to_map_file(after.contents()), file);
+  anna.forget_told();
+  anna.session_ns = 2;
+  anna.tell(after);
+  EXPECT_EQ(after.counters().keyframes, 0U) << "what is in the map is not asked for again";
+  anna.walk(200, after);
+  EXPECT_GT(after.counters().keyframes, 0U);
+  EXPECT_LT(error_m(after, anna, anna), 0.01);
+}
+
+TEST(Atlas, old_keyframes_of_a_place_give_way_to_newer_ones) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig config;
+  config.cell_keyframes = 1;
+  Atlas atlas(config);
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(600, atlas);
+  const std::size_t kept = atlas.map().keyframes().size();
+  EXPECT_GT(atlas.counters().given_way, 0U);
+  anna.walk(600, atlas);
+  EXPECT_LE(atlas.map().keyframes().size(), kept + kept / 4) << "the same room takes no more, however long";
+  EXPECT_TRUE(atlas.missing("anna", 100).keyframe_ids.empty()) << "what gave way is not asked for again";
+  EXPECT_EQ(atlas.map().check_invariants(), "");
+}
+
+TEST(Atlas, a_robot_with_a_false_map_bends_nobody_elses) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 250);
+  anna.walk(200, atlas);
+  bert.walk(200, atlas);
+  const Eigen::Isometry3d before = atlas.map().keyframes().begin()->second.T_world_camera;
+  // From now on bert says that its keyframes lie elsewhere, each somewhere else.
+  msg::MapUpdate lies;
+  lies.session_ns = bert.session_ns;
+  for (const slam::KeyframeView& keyframe : bert.slam().map_view().keyframes) {
+    msg::MapKeyframe& entry = lies.keyframes.emplace_back();
+    entry.keyframe_id = keyframe.id;
+    entry.stamp_ns = keyframe.stamp_ns;
+    Eigen::Isometry3d T = keyframe.T_world_camera;
+    T.translation() *= 1.0 + keyframe.id;
+    entry.T_world_camera = msg::to_message(T);
+  }
+  atlas.follow("bert", lies);
+  atlas.straighten();
+  EXPECT_LT((atlas.map().keyframes().begin()->second.T_world_camera.inverse() * before).translation().norm(), 1e-6);
+  EXPECT_LT(error_m(atlas, anna, anna), 0.01);
+}
+
+TEST(Atlas, takes_nothing_that_cannot_be) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(60, atlas);
+  msg::KeyframeFeatures features = query_of(*world.view(90));
+  EXPECT_FALSE(atlas.add("anna", features)) << "never announced";
+  EXPECT_FALSE(atlas.add("nobody", features));
+  features.width = 0;
+  EXPECT_FALSE(atlas.locate(features));
+  features = query_of(*world.view(90));
+  for (msg::KeyframeFeature& feature : features.features) feature.octave = 31;
+  EXPECT_FALSE(atlas.locate(features));
+  features.features.clear();
+  EXPECT_FALSE(atlas.locate(features));
+}
+
+}  // namespace
+}  // namespace rtd::atlas
