@@ -12,43 +12,16 @@
 #include "services/atlas/core/atlas.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "services/slam/core/store/map_store.hpp"
+#include "services/slam/keyframe_sender.hpp"
 #include "services/slam/map_publisher.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/settled_map.hpp"
 
 namespace rtd::test_support {
 
-/// A keyframe as slam sends it.
-inline msg::KeyframeFeatures features_of(const slam::Map& map, slam::KeyframeId id, std::int64_t session_ns) {
-  const slam::Keyframe& keyframe = *map.find_keyframe(id);
-  const slam::Frame& frame = *keyframe.frame;
-  msg::KeyframeFeatures message;
-  message.session_ns = session_ns;
-  message.keyframe_id = id;
-  message.stamp_ns = frame.stamp_ns;
-  message.intrinsics = {frame.camera.fx, frame.camera.fy, frame.camera.cx, frame.camera.cy};
-  message.disparity_px_m = frame.camera.disparity_px_m;
-  message.width = static_cast<std::uint32_t>(frame.width_px);
-  message.height = static_cast<std::uint32_t>(frame.height_px);
-  for (std::size_t i = 0; i < frame.features.size(); ++i) {
-    const msg::Feature& f = frame.features[i];
-    const slam::LandmarkId landmark = keyframe.landmarks[i];
-    const bool settled = landmark != slam::kNoLandmark && slam::has_measured_depth(*map.find_landmark(landmark));
-    message.features.push_back({f.u_px, f.v_px, f.depth_m, f.angle_rad, settled ? landmark : msg::kNoId,
-                                f.static_probability, f.octave, f.flags, f.descriptor});
-  }
-  return message;
-}
-
 /// A frame whose place is asked for.
 inline msg::KeyframeFeatures query_of(const msg::FeatureFrame& message) {
-  slam::SlamConfig config;
-  const slam::FramePtr frame = slam::make_frame(message, config.sensor).frame;
-  slam::Map map;
-  msg::KeyframeFeatures query =
-      features_of(map, map.add_keyframe(frame, Eigen::Isometry3d::Identity(), slam::kNoKeyframe), 0);
-  query.keyframe_id = msg::kNoId;
-  return query;
+  return slam::make_features(*slam::make_frame(message, slam::SlamConfig().sensor).frame);
 }
 
 inline slam::MapContents map_of(const msg::Submap& submap) {
@@ -93,13 +66,18 @@ class AtlasRobot {
       update.revision = ++revision_;
       atlas.follow(name_, update);
     }
-    for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids)
-      atlas.add(name_, slam_.read_map([&](const slam::Map& map) { return features_of(map, id, session_ns); }));
+    for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids) atlas.add(name_, features_of(id));
     atlas.straighten();
   }
   void forget_told() { changes_.forget(); }
 
  private:
+  msg::KeyframeFeatures features_of(slam::KeyframeId id) {
+    msg::KeyframeFeatures features =
+        slam_.read_map([&](const slam::Map& map) { return slam::make_features(map, *map.find_keyframe(id), true); });
+    features.session_ns = session_ns;
+    return features;
+  }
   static slam::SlamSystem make_slam() {
     slam::SlamConfig config = settled();
     config.sensor.calibration_error = 0;
