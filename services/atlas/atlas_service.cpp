@@ -79,13 +79,14 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
       runtime_(runtime),
       atlas_(config.core),
       maps_(config.maps_folder, {"map", ".rtdmap", slam::map_format::kMagic, "--maps-dir"}),
-      finder_(runtime.bus_options, bus::topics::kMap),
       state_writer_(runtime.bus.writer(bus::topics::kAtlas)),
       poses_writer_(runtime.bus.writer(bus::topics::kAtlasRobots)),
       points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),
       tf_writer_(runtime.bus.writer(bus::topics::kTfStatic)),
       desk_(std::in_place, runtime.bus) {
   if (!config_.map_file.empty() && std::filesystem::exists(config_.map_file)) load(config_.map_file);
+  if (config_.robots.empty()) finder_.emplace(runtime.bus_options, bus::topics::kMap);
+  for (const std::string& robot : config_.robots) bus::require_robot_name(robot);
   using bus::CommandKind;
   using bus::CommandRequest;
   desk_->offer("atlas/save", CommandKind::kText,
@@ -132,7 +133,9 @@ std::deque<AtlasService::Arrival> AtlasService::take_arrivals() {
 }
 
 void AtlasService::find_robots() {
-  for (const std::string& robot : finder_.robots()) {
+  const std::set<std::string> robots =
+      finder_ ? finder_->robots() : std::set<std::string>(config_.robots.begin(), config_.robots.end());
+  for (const std::string& robot : robots) {
     if (lanes_.contains(robot) || forgotten_.contains(robot)) continue;
     try {
       open_lane(robot);

@@ -15,7 +15,9 @@
 #include "common/bus/bus.hpp"
 #include "common/bus/commands.hpp"
 #include "common/bus/robot_finder.hpp"
+#include "common/io/atomic_file.hpp"
 #include "common/io/named_files.hpp"
+#include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
@@ -33,6 +35,7 @@ struct ServiceConfig {
   std::string map_file;
   std::string maps_folder;
   std::string map_frame = "map";
+  std::vector<std::string> robots;
   int checkpoint_s = 60;
   int request_keyframes = 10;
 
@@ -44,6 +47,7 @@ struct ServiceConfig {
     binder.field("maps_dir", maps_folder, "folder of the maps that atlas/save and atlas/load may name; empty: none")
         .option("--maps-dir");
     binder.field("map_frame", map_frame, "frame of the joint map");
+    binder.field("robots", robots, "names of those that are listened to; empty: all in the domain").option("--robots");
     binder.field("checkpoint_s", checkpoint_s, {1, 86'400}, "between two saves of a map that grows");
     binder.field("request_keyframes", request_keyframes, {1, 1000}, "asked of a robot at a time");
   }
@@ -111,7 +115,7 @@ class AtlasService {
   std::deque<Arrival> arrivals_;
   std::uint64_t dropped_ = 0;
   const io::NamedFiles maps_;
-  bus::RobotFinder finder_;
+  std::optional<bus::RobotFinder> finder_;  ///< unless the robots are named
   bus::Writer<msg::AtlasState> state_writer_;
   bus::Writer<msg::PoseArray> poses_writer_;
   bus::Writer<msg::PointCloud2> points_writer_;

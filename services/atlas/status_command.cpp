@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cmath>
 #include <future>
 #include <iostream>
@@ -12,7 +13,9 @@
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/port_check.hpp"
 #include "common/io/printable.hpp"
+#include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"
+#include "common/service/config.hpp"
 
 namespace rtd::atlas {
 namespace {

@@ -28,11 +28,50 @@ inline slam::MapContents map_of(const msg::Submap& submap) {
   return slam::read_map(io::MemorySource(std::as_bytes(std::span(submap.file))));
 }
 
-/// A robot that walks through a FeatureWorld, and what its slam tells an atlas.
+/// What the slam of a robot tells an atlas: what changed in its map, and what it is asked for.
+class AtlasTeller {
+ public:
+  AtlasTeller(std::string name, slam::SlamSystem& slam) : name_(std::move(name)), slam_(slam) {}
+  const std::string& name() const { return name_; }
+
+  void tell(atlas::Atlas& atlas) {
+    const slam::MapView view = slam_.map_view();
+    const slam::MapNews news = changes_.update(view);
+    for (msg::MapUpdate& update : slam::make_map_updates(view, news)) {
+      update.session_ns = session_ns;
+      update.revision = ++revision_;
+      atlas.follow(name_, update);
+    }
+    for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids) {
+      msg::KeyframeFeatures features =
+          slam_.read_map([&](const slam::Map& map) { return slam::make_features(map, *map.find_keyframe(id), true); });
+      features.session_ns = session_ns;
+      bytes_sent += 128 + sizeof(msg::KeyframeFeature) * features.features.size();
+      atlas.add(name_, features);
+    }
+    atlas.straighten();
+  }
+  /// As for a reader that is new.
+  void forget_told() {
+    changes_.forget();
+    ++session_ns;
+  }
+
+  std::int64_t session_ns = 1;
+  std::size_t bytes_sent = 0;  ///< of features
+
+ private:
+  std::string name_;
+  slam::SlamSystem& slam_;
+  slam::MapChanges changes_;
+  std::uint64_t revision_ = 0;
+};
+
+/// A robot that walks through a FeatureWorld.
 class AtlasRobot {
  public:
   AtlasRobot(std::string name, const FeatureWorld& world, std::uint64_t first_seq)
-      : name_(std::move(name)), world_(world), first_(first_seq), slam_(make_slam()) {}
+      : world_(world), first_(first_seq), slam_(make_slam()), teller_(std::move(name), slam_) {}
 
   /// The true pose of its map's frame in that of the world, for a robot that began with a map of its own.
   Eigen::Isometry3d T_world_map() const { return FeatureWorld::T_world_camera(first_) * T_map_first_.inverse(); }
@@ -42,53 +81,33 @@ class AtlasRobot {
     const auto since_ns = static_cast<double>(stamp_ns - FeatureWorld::stamp_ns(0)) - static_cast<double>(first_);
     return FeatureWorld::T_world_camera(static_cast<std::uint64_t>(std::llround(since_ns / kPeriodNs)));
   }
-  const std::string& name() const { return name_; }
+  const std::string& name() const { return teller_.name(); }
   slam::SlamSystem& slam() { return slam_; }
-  std::int64_t session_ns = 1;
+  AtlasTeller& teller() { return teller_; }
 
-  /// `frames` more, each told to the atlas at once.
+  /// `frames` more, told to the atlas twice a second.
   void walk(int frames, atlas::Atlas& atlas) {
     for (int i = 0; i < frames; ++i) {
       const std::uint64_t seq = first_ + seen_++;
-      const auto frame = world_.view(seq, FeatureWorld::T_world_camera(seq));
+      const auto frame = world_.view(seq);
       frame->stamp_ns += static_cast<std::int64_t>(first_);  // robots have clocks of their own
       const slam::SlamOutput output = slam_.process(*frame);
       if (seen_ == 1) T_map_first_ = output.result.T_world_camera;
-      if (seen_ % 15 == 0) tell(atlas);
+      if (seen_ % 15 == 0) teller_.tell(atlas);
     }
   }
-  /// What is new, and what it is asked for.
-  void tell(atlas::Atlas& atlas) {
-    const slam::MapView view = slam_.map_view();
-    const slam::MapNews news = changes_.update(view);
-    for (msg::MapUpdate& update : slam::make_map_updates(view, news)) {
-      update.session_ns = session_ns;
-      update.revision = ++revision_;
-      atlas.follow(name_, update);
-    }
-    for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids) atlas.add(name_, features_of(id));
-    atlas.straighten();
-  }
-  void forget_told() { changes_.forget(); }
 
  private:
-  msg::KeyframeFeatures features_of(slam::KeyframeId id) {
-    msg::KeyframeFeatures features =
-        slam_.read_map([&](const slam::Map& map) { return slam::make_features(map, *map.find_keyframe(id), true); });
-    features.session_ns = session_ns;
-    return features;
-  }
   static slam::SlamSystem make_slam() {
     slam::SlamConfig config = settled();
     config.sensor.calibration_error = 0;
     return {config, slam::MappingMode::kSynchronous, frozen_clock};
   }
 
-  std::string name_;
   const FeatureWorld& world_;
-  std::uint64_t first_, seen_ = 0, revision_ = 0;
+  std::uint64_t first_, seen_ = 0;
   slam::SlamSystem slam_;
-  slam::MapChanges changes_;
+  AtlasTeller teller_;
   Eigen::Isometry3d T_map_first_ = Eigen::Isometry3d::Identity();
 };
 

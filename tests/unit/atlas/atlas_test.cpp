@@ -93,9 +93,8 @@ TEST(Atlas, a_map_that_was_saved_goes_on_with_the_same_robots) {
   Atlas after({});
   after.restore(slam::read_map(io::MemorySource(file)), before.owners());
   EXPECT_EQ(to_map_file(after.contents()), file);
-  anna.forget_told();
-  anna.session_ns = 2;
-  anna.tell(after);
+  anna.teller().forget_told();
+  anna.teller().tell(after);
   EXPECT_EQ(after.counters().keyframes, 0U) << "what is in the map is not asked for again";
   anna.walk(200, after);
   EXPECT_GT(after.counters().keyframes, 0U);
@@ -126,7 +125,7 @@ TEST(Atlas, a_robot_with_a_false_map_bends_nobody_elses) {
   const Eigen::Isometry3d before = atlas.map().keyframes().begin()->second.T_world_camera;
   // From now on bert says that its keyframes lie elsewhere, each somewhere else.
   msg::MapUpdate lies;
-  lies.session_ns = bert.session_ns;
+  lies.session_ns = bert.teller().session_ns;
   for (const slam::KeyframeView& keyframe : bert.slam().map_view().keyframes) {
     msg::MapKeyframe& entry = lies.keyframes.emplace_back();
     entry.keyframe_id = keyframe.id;

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// An atlas and the robots that talk to it, on the in-process bus.
+#include "services/atlas/atlas_service.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "common/msg/transform_eigen.hpp"
+#include "services/atlas/status_command.hpp"
+#include "services/slam/keyframe_sender.hpp"
+#include "services/slam/map_file.hpp"
+#include "tests/support/atlas_robot.hpp"
+#include "tests/support/service_fixture.hpp"
+
+namespace rtd::atlas {
+namespace {
+
+using namespace std::chrono_literals;
+using test_support::FeatureWorld;
+using test_support::Inbox;
+using test_support::query_of;
+
+/// The part of a robot's slam that tells of its map.
+class Robot {
+ public:
+  Robot(const bus::Bus& bus, const std::string& name, const FeatureWorld& world, std::uint64_t first_seq)
+      : bus_(bus.of_robot(name)),
+        submaps_reader_(bus_->reader<msg::Submap>(
+            bus::topics::kSubmap,
+            [inbox = submaps](std::shared_ptr<const msg::Submap> submap) { inbox.take(std::move(submap)); })),
+        publisher_(
+            *bus_, [this] { return slam_.map_view(); }, 20ms),
+        sender_(*bus_, unlimited(), slam_, publisher_),
+        world_(world),
+        next_(first_seq) {}
+
+  void walk(int frames) {
+    for (int i = 0; i < frames; ++i) slam_.process(*world_.view(next_++));
+  }
+  void ask_where() { sender_.send(query_of(*world_.view(next_))); }
+
+  Inbox<msg::Submap> submaps;
+
+ private:
+  static slam::ServiceConfig unlimited() {
+    slam::ServiceConfig config;
+    config.atlas.bytes_per_s = 1'000'000'000;
+    return config;
+  }
+
+  slam::SlamSystem slam_{test_support::settled(), slam::MappingMode::kSynchronous, test_support::frozen_clock};
+  std::shared_ptr<bus::Bus> bus_;
+  bus::Reader<msg::Submap> submaps_reader_;
+  slam::MapPublisher publisher_;
+  slam::KeyframeSender sender_;
+  const FeatureWorld& world_;
+  std::uint64_t next_;
+};
+
+class AtlasServiceTest : public test_support::ServiceFixture<AtlasService> {
+ protected:
+  AtlasServiceTest() {
+    config_.robots = {"anna", "bert"};
+    config_.map_file = (folder_ / "building.rtdmap").string();
+    std::filesystem::create_directories(folder_);
+    state_reader_ = bus_->reader<msg::AtlasState>(
+        bus::topics::kAtlas,
+        [inbox = atlas_](std::shared_ptr<const msg::AtlasState> state) { inbox.take(std::move(state)); });
+    tf_reader_ = bus_->reader<msg::TFMessage>(
+        bus::topics::kTfStatic,
+        [inbox = transforms_](std::shared_ptr<const msg::TFMessage> tf) { inbox.take(std::move(tf)); });
+  }
+  /// Both walk through one room until the atlas has them in one map.
+  void let_them_meet() {
+    start(service::Pace::kRealtime);
+    anna_.emplace(*bus_, "anna", world_, 0);
+    bert_.emplace(*bus_, "bert", world_, 250);
+    anna_->walk(200);
+    bert_->walk(200);
+    ASSERT_TRUE(atlas_.wait([](const auto& all) {
+      return !all.empty() && all.back()->robots.size() == 2 &&
+             std::ranges::all_of(all.back()->robots, &msg::AtlasRobot::met);
+    }));
+  }
+  bus::CommandAnswer call(const std::string& command, const std::string& argument) {
+    return bus_->commands()->call(command, {argument}).value_or(bus::CommandAnswer{false, "not offered"});
+  }
+
+  const FeatureWorld world_ = FeatureWorld::noisy();
+  Inbox<msg::AtlasState> atlas_;
+  Inbox<msg::TFMessage> transforms_;
+  bus::Reader<msg::AtlasState> state_reader_;
+  bus::Reader<msg::TFMessage> tf_reader_;
+  std::optional<Robot> anna_, bert_;
+};
+
+TEST_F(AtlasServiceTest, puts_robots_of_one_room_into_one_map) {
+  let_them_meet();
+  ASSERT_TRUE(transforms_.wait([](const auto& all) { return !all.empty() && all.back()->transforms.size() == 2; }));
+  const auto tf = transforms_.all().back();
+  EXPECT_EQ(tf->transforms[0].header.frame_id, "map");
+  EXPECT_EQ(tf->transforms[0].child_frame_id, "anna/map");
+  EXPECT_EQ(tf->transforms[1].child_frame_id, "bert/map");
+  const Eigen::Isometry3d truth = FeatureWorld::T_world_camera(250);
+  const auto& t = tf->transforms[1].transform.translation;
+  EXPECT_LT((Eigen::Vector3d(t.x, t.y, t.z) - truth.translation()).norm(), 0.02) << "bert's map began there";
+  EXPECT_THAT(to_table(*atlas_.all().back()), testing::HasSubstr("bert"));
+}
+
+TEST_F(AtlasServiceTest, answers_a_robot_that_asks_where_it_is) {
+  let_them_meet();
+  bert_->ask_where();
+  ASSERT_TRUE(bert_->submaps.wait_count(1));
+  EXPECT_GE(test_support::map_of(*bert_->submaps.all().back()).keyframes.size(), 3U);
+  EXPECT_TRUE(anna_->submaps.all().empty()) << "nobody else";
+}
+
+TEST_F(AtlasServiceTest, saves_the_map_and_forgets_a_robot) {
+  let_them_meet();
+  const bus::CommandAnswer saved = call("atlas/save", "");
+  EXPECT_TRUE(saved.success) << saved.message;
+  const std::size_t both = slam::load_map_file(config_.map_file).keyframes.size();
+  EXPECT_FALSE(call("atlas/forget", "carl").success);
+  const bus::CommandAnswer forgotten = call("atlas/forget", "anna");
+  EXPECT_TRUE(forgotten.success) << forgotten.message;
+  ASSERT_TRUE(atlas_.wait([](const auto& all) { return all.back()->robots.size() == 1; }));
+  EXPECT_EQ(stop(), service::kOk);
+  const std::size_t without = slam::load_map_file(config_.map_file).keyframes.size();
+  EXPECT_LT(without, both);
+  EXPECT_GT(without, 0U);
+}
+
+TEST_F(AtlasServiceTest, goes_on_with_the_map_that_it_saved) {
+  let_them_meet();
+  EXPECT_TRUE(call("atlas/save", "").success);
+  const bus::CommandAnswer loaded = call("atlas/load", "");
+  EXPECT_TRUE(loaded.success) << loaded.message;
+  ASSERT_TRUE(atlas_.wait([](const auto& all) {
+    const auto& robots = all.back()->robots;
+    return robots.size() == 2 && std::ranges::all_of(robots, &msg::AtlasRobot::met) && robots[1].meetings == 0;
+  })) << "their keyframes are recognised, without meeting anew";
+  EXPECT_EQ(atlas_.all().back()->robots[0].missing, 0U);
+}
+
+}  // namespace
+}  // namespace rtd::atlas

@@ -1,0 +1,40 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "services/atlas/core/atlas.hpp"
+#include "tests/support/offline_pipeline.hpp"
+
+namespace rtd::test_support {
+
+/// A robot of an atlas trial.
+struct TrialRobot {
+  std::string name, source;     ///< URI
+  std::size_t first_frame = 0;  ///< of the source
+  std::size_t max_frames = 0;   ///< 0: all
+};
+
+struct TrialResult {
+  struct Robot {
+    std::string name;
+    bool met = false;
+    std::uint32_t meetings = 0, keyframes = 0;
+    double ate_alone_m = 0;         ///< RMSE of its own trajectory, aligned for itself
+    double ate_joint_m = 0;         ///< in the joint map, all robots that met aligned together
+    double kilobytes_per_s = 0;     ///< of features
+    double first_pose_s = -1;       ///< its place asked for with every 15th frame: time to the first answer; -1: none
+    double first_pose_error_m = 0;  ///< of that answer; only for robots after the first
+  };
+  std::vector<Robot> robots;
+  double ate_joint_m = 0;  ///< RMSE over all robots that met
+  atlas::AtlasCounters counters;
+};
+
+/// Robots that walk one after the other, each telling the atlas what it maps. `options`: of all; the source is theirs.
+TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
+                            const atlas::AtlasConfig& config = {});
+
+}  // namespace rtd::test_support

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
+// SPDX-License-Identifier: Apache-2.0
+/// rtd_offline_atlas: robots that walk through sources one after the other, and the joint map of them. What
+/// docs/results.md says about the atlas comes from here.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <sstream>
+
+#include "tests/support/atlas_trial.hpp"
+
+int main(int argc, char** argv) {
+  using namespace rtd::test_support;
+  OfflineOptions options;
+  std::vector<std::string> walks;
+  CLI::App app{"Robots that walk through sources one after the other, and the joint map of them", "rtd_offline_atlas"};
+  app.add_option("--mode", options.front_end.mode, "off, true-mask, or a mode of the filter")->capture_default_str();
+  app.add_option("--model", options.front_end.detector.model, "As of rtd run");
+  app.add_option("WALKS", walks, "SOURCE[ FIRST_FRAME FRAMES] of each robot")->required();
+  CLI11_PARSE(app, argc, argv);
+  std::vector<TrialRobot> robots;
+  for (const std::string& walk : walks) {
+    TrialRobot& robot = robots.emplace_back();
+    robot.name = "robot" + std::to_string(robots.size());
+    std::istringstream words(walk);
+    words >> robot.source >> robot.first_frame >> robot.max_frames;
+  }
+  try {
+    const TrialResult result = run_atlas_trial(robots, options);
+    for (const TrialResult::Robot& robot : result.robots)
+      std::cout << fmt::format(
+          "{}: {} meetings {} keyframes {} ate alone {:.4f} m, joint {:.4f} m, {:.0f} kB/s, first pose after {:.2f} s, "
+          "{:.4f} m wrong\n",
+          robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
+          robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m);
+    std::cout << fmt::format("joint ate {:.4f} m, {} meetings, {} refused, {} corrections, {} gave way\n",
+                             result.ate_joint_m, result.counters.meetings, result.counters.refused,
+                             result.counters.corrections, result.counters.given_way);
+  } catch (const std::exception& error) {
+    std::cerr << "rtd_offline_atlas: " << error.what() << '\n';
+    return 1;
+  }
+  return 0;
+}
