@@ -34,9 +34,11 @@ int main(int argc, char** argv) {
           "{:.4f} m wrong\n",
           robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
           robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m);
-    std::cout << fmt::format("joint ate {:.4f} m, {} meetings, {} refused, {} corrections, {} gave way\n",
-                             result.ate_joint_m, result.counters.meetings, result.counters.refused,
-                             result.counters.corrections, result.counters.given_way);
+    std::cout << fmt::format(
+        "joint ate {:.4f} m, {} keyframes met, {} implausible, {} meetings, {} refused, {} corrections, "
+        "{} gave way\n",
+        result.ate_joint_m, result.counters.met, result.counters.implausible, result.counters.meetings,
+        result.counters.refused, result.counters.corrections, result.counters.given_way);
   } catch (const std::exception& error) {
     std::cerr << "rtd_offline_atlas: " << error.what() << '\n';
     return 1;

@@ -29,7 +29,7 @@ using slam::MapId;
 struct AtlasConfig {
   slam::SlamConfig slam;  ///< `loop`: when two places are one
   double cell_m = 0.75;
-  int cell_keyframes = 4;
+  int cell_keyframes = 6;
   int look_every = 5;
   int settled_after = 2;
   int submap_keyframes = 12;
@@ -109,15 +109,14 @@ class Atlas {
   struct Meeting {
     KeyframeId place = slam::kNoKeyframe, keyframe = slam::kNoKeyframe;
     Eigen::Isometry3d T_place_keyframe = Eigen::Isometry3d::Identity();
-    std::uint64_t number = 0;  ///< of the confirmed meeting that it belongs to
+    std::uint64_t number = 0;                                     ///< of the confirmed meeting that it belongs to
+    Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();  ///< what it does to the world of the keyframe
   };
   struct Robot {
     std::int64_t session_ns = 0;
     std::map<KeyframeId, Announced> keyframes;
     std::unordered_map<std::uint32_t, LandmarkId> landmarks;  ///< by its own ids
-    slam::Agreement agreement;
-    std::vector<Meeting> agreeing;           ///< keyframes that agree so far
-    std::array<MapId, 2> agreeing_worlds{};  ///< of keyframe and place
+    std::vector<Meeting> undecided;                           ///< that too few others agree with
     int since_look = 0;
     double way_m = 0, way_at_meeting_m = 0;
     std::uint32_t meetings = 0;
@@ -136,7 +135,7 @@ class Atlas {
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);
   std::optional<slam::PlaceMeeting> meet(const std::string& name, const Robot& robot, KeyframeId keyframe);
   bool is_plausible(const Robot& robot, KeyframeId keyframe, const slam::PlaceMeeting& meeting) const;
-  void accept(const std::string& name, Robot& robot, const Eigen::Isometry3d& T_new_old);
+  void accept(const std::string& name, Robot& robot, const Meeting& last, std::vector<Meeting> agreeing);
   void join_worlds(MapId kept, MapId joined, const Eigen::Isometry3d& T_kept_joined);
   MapId world_of(KeyframeId keyframe) const { return worlds_.at(map_.find_keyframe(keyframe)->map); }
   Cell cell_of(MapId world, const Eigen::Isometry3d& T_world_camera) const;

@@ -12,15 +12,19 @@ namespace rtd::atlas {
 using slam::Keyframe;
 using slam::kNoKeyframe;
 
-std::optional<slam::PlaceMeeting> Atlas::meet(const std::string& name, const Robot& robot, KeyframeId keyframe) {
-  const MapId here = world_of(keyframe);
-  const auto admitted = [&](KeyframeId id) { return sources_.at(id).robot != name || world_of(id) != here; };
-  for (const slam::PlaceCandidate& candidate :
-       slam::find_like_places(map_, places_, keyframe, config_.slam.loop, admitted)) {
-    auto meeting = slam::meet_place(map_, *map_.find_keyframe(keyframe)->frame, candidate.keyframe, config_.slam);
+/// Of one robot: more are forgotten, the oldest first.
+static constexpr std::size_t kMostUndecided = 50;
+
+std::optional<slam::PlaceMeeting> Atlas::meet(const std::string& name, const Robot& robot, KeyframeId id) {
+  const MapId here = world_of(id);
+  slam::PlaceQuery query;
+  query.admitted = [&](KeyframeId other) { return sources_.at(other).robot != name || world_of(other) != here; };
+  query.max_candidates = static_cast<std::size_t>(config_.slam.place.candidates);
+  for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, *places_.find(id), query)) {
+    auto meeting = slam::meet_place(map_, *map_.find_keyframe(id)->frame, candidate.keyframe, config_.slam);
     if (!meeting) continue;
     ++counters_.met;
-    if (is_plausible(robot, keyframe, *meeting)) return meeting;
+    if (is_plausible(robot, id, *meeting)) return meeting;
     ++counters_.implausible;
   }
   return std::nullopt;
@@ -36,42 +40,44 @@ bool Atlas::is_plausible(const Robot& robot, KeyframeId id, const slam::PlaceMee
          geometry::rotation_angle_rad(T) <= loop.max_offset_rad + loop.max_drift_rad_m * way_m;
 }
 
+/// A meeting counts once enough keyframes of the robot ask for the same, wherever they are.
 void Atlas::look_for_meeting(const std::string& name, Robot& robot, KeyframeId id) {
   const bool met = robot.meetings > 0 && is_joined(id);
-  if (met && robot.agreement.empty() && ++robot.since_look < config_.look_every) return;
+  if (met && robot.undecided.empty() && ++robot.since_look < config_.look_every) return;
   robot.since_look = 0;
-  const std::optional<slam::PlaceMeeting> meeting = meet(name, robot, id);
-  if (!meeting) {
-    robot.agreement.miss(config_.slam.loop);
-    if (robot.agreement.empty()) robot.agreeing.clear();
-    return;
-  }
-  const Keyframe& keyframe = *map_.find_keyframe(id);
-  const std::array<MapId, 2> worlds{world_of(id), world_of(meeting->place)};
-  const Eigen::Isometry3d T_new_old = meeting->T_world_camera * keyframe.T_world_camera.inverse();
-  const bool agreed =
-      robot.agreement.add(T_new_old, keyframe.T_world_camera, worlds == robot.agreeing_worlds, config_.slam.loop);
-  if (!agreed && robot.agreement.confirmations() == 1) robot.agreeing.clear();
-  robot.agreeing_worlds = worlds;
-  const Eigen::Isometry3d T_world_place = map_.find_keyframe(meeting->place)->T_world_camera;
-  robot.agreeing.push_back({meeting->place, id, T_world_place.inverse() * meeting->T_world_camera});
-  if (agreed) accept(name, robot, T_new_old);
+  const std::optional<slam::PlaceMeeting> met_place = meet(name, robot, id);
+  if (!met_place) return;
+  const Eigen::Isometry3d T_world_keyframe = map_.find_keyframe(id)->T_world_camera;
+  Meeting meeting{met_place->place, id,
+                  map_.find_keyframe(met_place->place)->T_world_camera.inverse() * met_place->T_world_camera};
+  meeting.T_new_old = met_place->T_world_camera * T_world_keyframe.inverse();
+  std::erase_if(robot.undecided, [&](const Meeting& other) {
+    return map_.find_keyframe(other.place) == nullptr || map_.find_keyframe(other.keyframe) == nullptr;
+  });
+  std::vector<Meeting> agreeing{meeting};
+  for (const Meeting& other : robot.undecided)
+    if (world_of(other.place) == world_of(meeting.place) && world_of(other.keyframe) == world_of(id) &&
+        slam::agree(meeting.T_new_old, other.T_new_old, T_world_keyframe, config_.slam.loop))
+      agreeing.push_back(other);
+  robot.undecided.push_back(meeting);
+  if (robot.undecided.size() > kMostUndecided) robot.undecided.erase(robot.undecided.begin());
+  if (static_cast<int>(agreeing.size()) >= config_.slam.loop.confirmations)
+    accept(name, robot, meeting, std::move(agreeing));
 }
 
-void Atlas::accept(const std::string& name, Robot& robot, const Eigen::Isometry3d& T_new_old) {
+void Atlas::accept(const std::string& name, Robot& robot, const Meeting& last, std::vector<Meeting> agreeing) {
   ++last_meeting_;
-  for (Meeting& meeting : robot.agreeing) {
-    if (map_.find_keyframe(meeting.place) == nullptr || map_.find_keyframe(meeting.keyframe) == nullptr) continue;
+  for (Meeting& meeting : agreeing) {
     meeting.number = last_meeting_;
     meetings_.push_back(meeting);
   }
-  robot.agreeing.clear();
+  robot.undecided.clear();
   robot.way_at_meeting_m = robot.way_m;
   ++robot.meetings;
   ++counters_.meetings;
-  const auto [here, there] = robot.agreeing_worlds;
-  if (there < here) join_worlds(there, here, T_new_old);
-  if (here < there) join_worlds(here, there, T_new_old.inverse());
+  const MapId here = world_of(last.keyframe), there = world_of(last.place);
+  if (there < here) join_worlds(there, here, last.T_new_old);
+  if (here < there) join_worlds(here, there, last.T_new_old.inverse());
   crooked_[std::min(here, there)] = name;
 }
 
@@ -82,6 +88,7 @@ void Atlas::join_worlds(MapId kept, MapId joined, const Eigen::Isometry3d& T_kep
     world = kept;
   }
   crooked_.erase(joined);
+  for (auto& [name, robot] : robots_) robot.undecided.clear();  // they spoke of other worlds
   ++counters_.corrections;
   sort_into_cells();
 }

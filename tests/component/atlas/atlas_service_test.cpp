@@ -100,12 +100,17 @@ TEST_F(AtlasServiceTest, puts_robots_of_one_room_into_one_map) {
   let_them_meet();
   ASSERT_TRUE(transforms_.wait([](const auto& all) { return !all.empty() && all.back()->transforms.size() == 2; }));
   const auto tf = transforms_.all().back();
+  const auto T_map = [&](std::size_t robot) {
+    const auto& [translation, rotation] = tf->transforms[robot].transform;
+    return msg::to_isometry(
+        {{translation.x, translation.y, translation.z}, {rotation.x, rotation.y, rotation.z, rotation.w}});
+  };
   EXPECT_EQ(tf->transforms[0].header.frame_id, "map");
   EXPECT_EQ(tf->transforms[0].child_frame_id, "anna/map");
   EXPECT_EQ(tf->transforms[1].child_frame_id, "bert/map");
-  const Eigen::Isometry3d truth = FeatureWorld::T_world_camera(250);
-  const auto& t = tf->transforms[1].transform.translation;
-  EXPECT_LT((Eigen::Vector3d(t.x, t.y, t.z) - truth.translation()).norm(), 0.02) << "bert's map began there";
+  const Eigen::Isometry3d T_anna_bert = T_map(0).inverse() * T_map(1);
+  EXPECT_LT((T_anna_bert.inverse() * FeatureWorld::T_world_camera(250)).translation().norm(), 0.02)
+      << "bert's map began there";
   EXPECT_THAT(to_table(*atlas_.all().back()), testing::HasSubstr("bert"));
 }
 

@@ -92,6 +92,12 @@ std::optional<PlaceMeeting> meet_place(const Map& map, const Frame& frame, Keyfr
                       tracking->guess.landmarks, tracking->guess.inliers, share};
 }
 
+bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_new_old,
+           const Eigen::Isometry3d& T_old_camera, const LoopConfig& config) {
+  const Eigen::Isometry3d T = (T_new_old * T_old_camera).inverse() * other_T_new_old * T_old_camera;
+  return T.translation().norm() <= config.agreement_m && geometry::rotation_angle_rad(T) <= config.agreement_rad;
+}
+
 int fuse_place(Map& map, KeyframeId keyframe, const PlaceMeeting& meeting, int neighbours) {
   const std::vector<KeyframeId> here = with_neighbours(map, keyframe, neighbours);
   const std::vector<LandmarkId> there = landmarks_of(map, with_neighbours(map, meeting.place, neighbours));
@@ -101,53 +107,30 @@ int fuse_place(Map& map, KeyframeId keyframe, const PlaceMeeting& meeting, int n
   return joined;
 }
 
-std::vector<PlaceCandidate> find_like_places(const Map& map, const KeyframeDatabase& places, KeyframeId keyframe,
-                                             const LoopConfig& config,
-                                             const std::function<bool(KeyframeId)>& admitted) {
-  const BagOfWords* bag = places.find(keyframe);
-  if (bag == nullptr) return {};
-  const std::set<KeyframeId> near = neighbourhood(map, keyframe);
-  PlaceQuery query;
-  query.admitted = [&](KeyframeId id) { return !near.contains(id) && (!admitted || admitted(id)); };
-  query.min_score = static_cast<float>(config.min_similarity) * least_similarity(map, places, keyframe);
-  query.max_candidates = static_cast<std::size_t>(config.max_candidates);
-  return find_places(places, map, *bag, query);
-}
-
-bool Agreement::add(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& T_old_camera, bool comparable,
-                    const LoopConfig& config) {
-  const Eigen::Isometry3d T_difference = (T_new_old * T_old_camera).inverse() * T_new_old_ * T_old_camera;
-  const bool agrees = comparable && confirmations_ > 0 && T_difference.translation().norm() <= config.agreement_m &&
-                      geometry::rotation_angle_rad(T_difference) <= config.agreement_rad;
-  *this = Agreement(T_new_old, agrees ? confirmations_ + 1 : 1);
-  if (confirmations_ < config.confirmations) return false;
-  reset();
-  return true;
-}
-
-void Agreement::miss(const LoopConfig& config) {
-  if (confirmations_ > 0 && ++misses_ > config.max_misses) reset();
-}
-
 std::optional<Loop> LoopDetector::detect(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
   const std::optional<PlaceMeeting> meeting = meet(map, places, newest);
   if (!meeting) {
-    agreement_.miss(config_.loop);
+    if (hypothesis_ && ++hypothesis_->misses > config_.loop.max_misses) hypothesis_.reset();
     return std::nullopt;
   }
-  const Keyframe& keyframe = *map.find_keyframe(newest);
-  const bool waited = !agreement_.empty();
-  const bool agreed = agreement_.add(correction(keyframe, *meeting), keyframe.T_world_camera,
-                                     comparable(map, newest, *meeting), config_.loop);
-  last_keyframe_ = newest;
-  last_place_ = meeting->place;
-  if (agreed) return Loop{newest, *meeting};
-  if (waited && agreement_.confirmations() == 1) ++counters_.contradictory;
-  return std::nullopt;
+  const bool confirmed = hypothesis_ && agrees(map, newest, *meeting);
+  if (hypothesis_ && !confirmed) ++counters_.contradictory;
+  const int confirmations = confirmed ? hypothesis_->confirmations + 1 : 1;
+  hypothesis_ = Hypothesis{newest, meeting->place, correction(*map.find_keyframe(newest), *meeting), confirmations, 0};
+  if (confirmations < config_.loop.confirmations) return std::nullopt;
+  hypothesis_.reset();
+  return Loop{newest, *meeting};
 }
 
 std::optional<PlaceMeeting> LoopDetector::meet(const Map& map, const KeyframeDatabase& places, KeyframeId newest) {
-  for (const PlaceCandidate& candidate : find_like_places(map, places, newest, config_.loop)) {
+  const BagOfWords* bag = places.find(newest);
+  if (bag == nullptr) return std::nullopt;
+  const std::set<KeyframeId> near = neighbourhood(map, newest);
+  PlaceQuery query;
+  query.admitted = [&](KeyframeId id) { return !near.contains(id); };
+  query.min_score = static_cast<float>(config_.loop.min_similarity) * least_similarity(map, places, newest);
+  query.max_candidates = static_cast<std::size_t>(config_.loop.max_candidates);
+  for (const PlaceCandidate& candidate : find_places(places, map, *bag, query)) {
     ++counters_.candidates;
     auto meeting = meet_place(map, *map.find_keyframe(newest)->frame, candidate.keyframe, config_);
     if (!meeting) continue;
@@ -171,12 +154,14 @@ bool LoopDetector::plausible(const Map& map, KeyframeId newest, const PlaceMeeti
          geometry::rotation_angle_rad(T_old_new) <= config.max_offset_rad + config.max_drift_rad_m * way_m;
 }
 
-/// Both keyframes are of one map, and met one map.
-bool LoopDetector::comparable(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
-  const Keyframe* place_before = map.find_keyframe(last_place_);
-  const Keyframe* keyframe_before = map.find_keyframe(last_keyframe_);
-  return (place_before == nullptr || place_before->map == map.find_keyframe(meeting.place)->map) &&
-         (keyframe_before == nullptr || keyframe_before->map == map.find_keyframe(newest)->map);
+/// Both keyframes imply the same correction of the newest one's pose, and of the same map.
+bool LoopDetector::agrees(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
+  const Keyframe* place_before = map.find_keyframe(hypothesis_->place);
+  const Keyframe* keyframe_before = map.find_keyframe(hypothesis_->keyframe);
+  const Keyframe& keyframe = *map.find_keyframe(newest);
+  if (place_before != nullptr && place_before->map != map.find_keyframe(meeting.place)->map) return false;
+  if (keyframe_before != nullptr && keyframe_before->map != keyframe.map) return false;
+  return agree(correction(keyframe, meeting), hypothesis_->T_new_old, keyframe.T_world_camera, config_.loop);
 }
 
 }  // namespace rtd::slam

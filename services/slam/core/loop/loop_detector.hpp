@@ -27,34 +27,9 @@ struct PlaceMeeting {
 std::optional<PlaceMeeting> meet_place(const Map& map, const Frame& frame, KeyframeId candidate,
                                        const SlamConfig& config);
 
-/// Places that a keyframe is compared with, most alike first: those that `admitted` lets pass (empty: all) outside its
-/// covisible neighbourhood. Empty for a keyframe that is not in `places`.
-std::vector<PlaceCandidate> find_like_places(const Map& map, const KeyframeDatabase& places, KeyframeId keyframe,
-                                             const LoopConfig& config,
-                                             const std::function<bool(KeyframeId)>& admitted = {});
-
-/// Counts keyframes, one after the other, that ask for the same correction T_world_new = T_new_old T_world_old.
-/// docs/theory/loop_closing.md, "Detection".
-class Agreement {
- public:
-  Agreement() = default;
-  /// Of a keyframe that is at T_old_camera; `comparable`: its correction is between the same worlds as those before.
-  /// True once enough keyframes agree; counting begins again then.
-  bool add(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& T_old_camera, bool comparable,
-           const LoopConfig& config);
-  /// A keyframe that met nothing.
-  void miss(const LoopConfig& config);
-  void reset() { *this = Agreement(); }
-  bool empty() const { return confirmations_ == 0; }
-  int confirmations() const { return confirmations_; }
-
- private:
-  Agreement(const Eigen::Isometry3d& T_new_old, int confirmations)
-      : T_new_old_(T_new_old), confirmations_(confirmations) {}
-
-  Eigen::Isometry3d T_new_old_ = Eigen::Isometry3d::Identity();
-  int confirmations_ = 0, misses_ = 0;
-};
+/// Whether two corrections T_world_new = T_new_old T_world_old move a camera at T_old_camera to about the same place.
+bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_new_old,
+           const Eigen::Isometry3d& T_old_camera, const LoopConfig& config);
 
 /// Joins the landmarks of a keyframe and its neighbours with those of the place it was found at; both stand where they
 /// belong already. First those that the meeting found, then by projection. Returns how many landmarks were joined or
@@ -85,17 +60,23 @@ class LoopDetector {
   /// The loop that the newest keyframe confirms, once enough keyframes agree.
   std::optional<Loop> detect(const Map& map, const KeyframeDatabase& places, KeyframeId newest);
   /// The map has been corrected: what was seen before is no hypothesis any more.
-  void forget() { agreement_.reset(); }
+  void forget() { hypothesis_.reset(); }
   const LoopCounters& counters() const { return counters_; }
 
  private:
+  /// A correction that the last keyframes agree on.
+  struct Hypothesis {
+    KeyframeId keyframe = kNoKeyframe, place = kNoKeyframe;  ///< the last that did
+    Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
+    int confirmations = 0, misses = 0;
+  };
+
   std::optional<PlaceMeeting> meet(const Map& map, const KeyframeDatabase& places, KeyframeId newest);
   bool plausible(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const;
-  bool comparable(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const;
+  bool agrees(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const;
 
   SlamConfig config_;
-  Agreement agreement_;
-  KeyframeId last_keyframe_ = kNoKeyframe, last_place_ = kNoKeyframe;  ///< the last that agreed
+  std::optional<Hypothesis> hypothesis_;
   LoopCounters counters_;
 };
 
