@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <span>
 #include <string>
@@ -47,9 +48,12 @@ class AtlasTeller {
           slam_.read_map([&](const slam::Map& map) { return slam::make_features(map, *map.find_keyframe(id), true); });
       features.session_ns = session_ns;
       bytes_sent += 128 + sizeof(msg::KeyframeFeature) * features.features.size();
-      atlas.add(name_, features);
+      const std::clock_t start = std::clock();
+      if (atlas.add(name_, features)) ++keyframes_taken;
+      add_s.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     }
-    atlas.straighten();
+    const std::clock_t start = std::clock();
+    if (atlas.straighten()) straighten_s.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   /// As for a reader that is new.
   void forget_told() {
@@ -59,6 +63,8 @@ class AtlasTeller {
 
   std::int64_t session_ns = 1;
   std::size_t bytes_sent = 0;  ///< of features
+  int keyframes_taken = 0;
+  std::vector<double> add_s, straighten_s;  ///< what the atlas took for each, CPU
 
  private:
   std::string name_;

@@ -89,6 +89,8 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
       if (const Eigen::Isometry3d* truth = lookup.find(first.stamp_ns)) first.p_truth = truth->translation();
     }
     entry.ate_alone_m = report.ate_rmse_m;
+    entry.add_ms = 1e3 * eval::summarize(teller->add_s).mean;
+    entry.straighten_ms = 1e3 * eval::summarize(teller->straighten_s).mean;
     entry.kilobytes_per_s = 1e-3 * static_cast<double>(teller->bytes_sent) * 30 / frames;
   }
   Pairs all;

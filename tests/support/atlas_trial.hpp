@@ -22,9 +22,10 @@ struct TrialResult {
     std::string name;
     bool met = false;
     std::uint32_t meetings = 0, keyframes = 0;
-    double ate_alone_m = 0;         ///< RMSE of its own trajectory, aligned for itself
-    double ate_joint_m = 0;         ///< in the joint map, all robots that met aligned together
-    double kilobytes_per_s = 0;     ///< of features
+    double ate_alone_m = 0;                ///< RMSE of its own trajectory, aligned for itself
+    double ate_joint_m = 0;                ///< in the joint map, all robots that met aligned together
+    double add_ms = 0, straighten_ms = 0;  ///< what a keyframe and a correction cost the atlas, mean CPU
+    double kilobytes_per_s = 0;            ///< of features
     double first_pose_s = -1;       ///< its place asked for with every 15th frame: time to the first answer; -1: none
     double first_pose_error_m = 0;  ///< of that answer; only for robots after the first
   };

@@ -31,9 +31,10 @@ int main(int argc, char** argv) {
     for (const TrialResult::Robot& robot : result.robots)
       std::cout << fmt::format(
           "{}: {} meetings {} keyframes {} ate alone {:.4f} m, joint {:.4f} m, {:.0f} kB/s, first pose after {:.2f} s, "
-          "{:.4f} m wrong\n",
+          "{:.4f} m wrong; {:.1f} ms a keyframe, {:.1f} ms a correction\n",
           robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
-          robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m);
+          robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m, robot.add_ms,
+          robot.straighten_ms);
     std::cout << fmt::format(
         "joint ate {:.4f} m, {} keyframes met, {} implausible, {} meetings, {} refused, {} corrections, "
         "{} gave way\n",

@@ -246,27 +246,32 @@ void Atlas::give_way(KeyframeId newest) {
   drop(oldest);
 }
 
+/// What met a keyframe that goes has met its heir.
+void Atlas::hand_on_meetings(std::vector<Meeting>& meetings, KeyframeId id, KeyframeId heir) const {
+  Eigen::Isometry3d T_heir_keyframe = Eigen::Isometry3d::Identity();
+  if (heir != kNoKeyframe)
+    T_heir_keyframe = map_.find_keyframe(heir)->T_world_camera.inverse() * map_.find_keyframe(id)->T_world_camera;
+  for (Meeting& meeting : meetings) {
+    if (meeting.place == id) {
+      meeting.place = heir;
+      meeting.T_place_keyframe = T_heir_keyframe * meeting.T_place_keyframe;
+    } else if (meeting.keyframe == id) {
+      meeting.keyframe = heir;
+      meeting.T_place_keyframe = meeting.T_place_keyframe * T_heir_keyframe.inverse();
+    }
+  }
+  std::erase_if(meetings, [](const Meeting& meeting) {
+    return meeting.place == kNoKeyframe || meeting.keyframe == kNoKeyframe || meeting.place == meeting.keyframe;
+  });
+}
+
 void Atlas::drop(KeyframeId id) {
   const Keyframe& keyframe = *map_.find_keyframe(id);
   const KeyframeId heir = !keyframe.is_origin()        ? keyframe.parent
                           : !keyframe.children.empty() ? keyframe.children.front()
                                                        : kNoKeyframe;
-  if (heir != kNoKeyframe) {  // what met this keyframe has met the heir
-    const Eigen::Isometry3d T_keyframe_heir =
-        keyframe.T_world_camera.inverse() * map_.find_keyframe(heir)->T_world_camera;
-    for (Meeting& meeting : meetings_) {
-      if (meeting.place == id) {
-        meeting.place = heir;
-        meeting.T_place_keyframe = T_keyframe_heir.inverse() * meeting.T_place_keyframe;
-      } else if (meeting.keyframe == id) {
-        meeting.keyframe = heir;
-        meeting.T_place_keyframe = meeting.T_place_keyframe * T_keyframe_heir;
-      }
-    }
-  }
-  std::erase_if(meetings_, [&](const Meeting& meeting) {
-    return meeting.place == id || meeting.keyframe == id || meeting.place == meeting.keyframe;
-  });
+  hand_on_meetings(meetings_, id, heir);
+  for (auto& [name, robot] : robots_) hand_on_meetings(robot.undecided, id, heir);
   std::vector<KeyframeId>& cell = cells_[cell_of(world_of(id), keyframe.T_world_camera)];
   std::erase(cell, id);
   const auto [first, last] = by_stamp_.equal_range(keyframe.frame->stamp_ns);

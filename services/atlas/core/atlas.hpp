@@ -30,8 +30,8 @@ struct AtlasConfig {
   slam::SlamConfig slam;  ///< `loop`: when two places are one
   double cell_m = 0.75;
   int cell_keyframes = 6;
-  int look_every = 5;
-  int settled_after = 2;
+  int look_every = 1;
+  int settled_after = 5;
   int submap_keyframes = 12;
   double most_bend_m = 0.02, most_bend_share = 0.03;
 
@@ -143,6 +143,7 @@ class Atlas {
   std::vector<KeyframeId> around(KeyframeId place, const Eigen::Isometry3d& T_world_camera) const;
   void give_way(KeyframeId newest);
   void drop(KeyframeId keyframe);
+  void hand_on_meetings(std::vector<Meeting>& meetings, KeyframeId id, KeyframeId heir) const;
   bool straighten_world(MapId world, const std::string& robot);
   bool bends_others(const slam::PoseGraph& graph, const std::vector<KeyframeId>& nodes, const std::string& robot) const;
   bool take_back_meeting(const std::string& robot);

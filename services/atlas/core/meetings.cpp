@@ -51,9 +51,6 @@ void Atlas::look_for_meeting(const std::string& name, Robot& robot, KeyframeId i
   Meeting meeting{met_place->place, id,
                   map_.find_keyframe(met_place->place)->T_world_camera.inverse() * met_place->T_world_camera};
   meeting.T_new_old = met_place->T_world_camera * T_world_keyframe.inverse();
-  std::erase_if(robot.undecided, [&](const Meeting& other) {
-    return map_.find_keyframe(other.place) == nullptr || map_.find_keyframe(other.keyframe) == nullptr;
-  });
   std::vector<Meeting> agreeing{meeting};
   for (const Meeting& other : robot.undecided)
     if (world_of(other.place) == world_of(meeting.place) && world_of(other.keyframe) == world_of(id) &&
