@@ -83,22 +83,22 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
       poses_writer_(runtime.bus.writer(bus::topics::kAtlasRobots)),
       points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),
       tf_writer_(runtime.bus.writer(bus::topics::kTfStatic)),
-      desk_(std::in_place, runtime.bus) {
+      server_(std::in_place, runtime.bus) {
   if (!config_.map_file.empty() && std::filesystem::exists(config_.map_file)) load(config_.map_file);
   if (config_.robots.empty()) finder_.emplace(runtime.bus_options, bus::topics::kMap);
   for (const std::string& robot : config_.robots) bus::require_robot_name(robot);
   using bus::CommandKind;
   using bus::CommandRequest;
-  desk_->offer("atlas/save", CommandKind::kText,
+  server_->offer("atlas/save", CommandKind::kText,
                [this](const CommandRequest& r) { return save_by_command(r.argument); });
-  desk_->offer("atlas/load", CommandKind::kText,
+  server_->offer("atlas/load", CommandKind::kText,
                [this](const CommandRequest& r) { return load_by_command(r.argument); });
-  desk_->offer("atlas/forget", CommandKind::kText, [this](const CommandRequest& r) { return forget(r.argument); });
+  server_->offer("atlas/forget", CommandKind::kText, [this](const CommandRequest& r) { return forget(r.argument); });
 }
 
 /// Readers end first: their callbacks use the rest.
 AtlasService::~AtlasService() {
-  desk_.reset();
+  server_.reset();
   lanes_.clear();
 }
 
@@ -110,7 +110,7 @@ service::ExitCode AtlasService::run() {
     for (const Arrival& arrival : take_arrivals()) take(arrival);
     straighten();
     for (auto& [robot, lane] : lanes_) ask(robot, lane);
-    desk_->serve();
+    server_->serve();
     publish();
     checkpoint();
   }
@@ -345,7 +345,7 @@ void AtlasService::checkpoint() {
 }
 
 service::ExitCode AtlasService::finish() {
-  desk_->close();
+  server_->close();
   checkpoint_ns_ = -config_.checkpoint_s * kSecondNs;
   checkpoint();
   const AtlasCounters& counters = atlas_->counters();

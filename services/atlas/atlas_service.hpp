@@ -129,7 +129,7 @@ class AtlasService {
   std::int64_t published_ns_ = 0, checkpoint_ns_ = 0, points_ns_ = 0, straightened_ns_ = 0;
   std::string trouble_;  ///< why the last save failed
   service::RateLimit robot_log_{std::chrono::seconds(1)}, query_log_{std::chrono::seconds(1)};
-  std::optional<bus::CommandDesk> desk_;  // last: it uses the others
+  std::optional<bus::CommandServer> server_;  // last: it uses the others
 };
 
 }  // namespace rtd::atlas

@@ -12,7 +12,7 @@
 #include <set>
 #include <string>
 
-#include "common/bus/raw_bus.hpp"
+#include "common/bus/robot_finder.hpp"
 #include "common/msg/ros.hpp"
 #include "common/service/exit_code.hpp"
 #include "common/service/log.hpp"
@@ -90,26 +90,6 @@ class RobotLane {
   bus::Reader<msg::CompressedImage> jpegs_;  ///< of update()
   std::int64_t camera_seen_ns_ = 0;          ///< last time; 0: never
   bus::Reader<msg::ServiceStatus> statuses_;
-};
-
-/// Finds the robots of a domain by their cameras, which announce JPEG images. Thread-safe.
-class RobotFinder {
- public:
-  /// Joins the domain. Throws BusError.
-  explicit RobotFinder(const bus::BusOptions& options);
-  ~RobotFinder();
-  RobotFinder(const RobotFinder&) = delete;
-  RobotFinder& operator=(const RobotFinder&) = delete;
-
-  /// Robots with a camera now; "" is the one without a name.
-  std::set<std::string> robots() const;
-
- private:
-  void note(const bus::TopicWriter& writer, bus::WriterChange change);
-
-  mutable std::mutex mutex_;
-  std::map<std::string, std::set<bus::WriterId>> cameras_;
-  std::shared_ptr<bus::RawBus> bus_;
 };
 
 /// One detector for the robots of a domain, by their JPEG images. Robots are found while it runs. The newest image of
