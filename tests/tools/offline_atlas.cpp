@@ -17,6 +17,13 @@ int main(int argc, char** argv) {
   CLI::App app{"Robots that walk through sources one after the other, and the joint map of them", "rtd_offline_atlas"};
   app.add_option("--mode", options.front_end.mode, "off, true-mask, or a mode of the filter")->capture_default_str();
   app.add_option("--model", options.front_end.detector.model, "As of rtd run");
+  rtd::atlas::AtlasConfig config;
+  app.add_option("--sigma", config.meeting_sigma_m);
+  app.add_option("--sigma-rad", config.meeting_sigma_rad);
+  app.add_option("--bend", config.most_bend_m);
+  app.add_option("--bend-share", config.most_bend_share);
+  app.add_option("--cell", config.cell_keyframes);
+  app.add_option("--look", config.look_every);
   app.add_option("WALKS", walks, "SOURCE[ FIRST_FRAME FRAMES] of each robot")->required();
   CLI11_PARSE(app, argc, argv);
   std::vector<TrialRobot> robots;
@@ -27,7 +34,7 @@ int main(int argc, char** argv) {
     words >> robot.source >> robot.first_frame >> robot.max_frames;
   }
   try {
-    const TrialResult result = run_atlas_trial(robots, options);
+    const TrialResult result = run_atlas_trial(robots, options, config);
     for (const TrialResult::Robot& robot : result.robots)
       std::cout << fmt::format(
           "{}: {} meetings {} keyframes {} ate alone {:.4f} m, joint {:.4f} m, {:.0f} kB/s, first pose after {:.2f} s, "

@@ -118,6 +118,30 @@ const Atlas::Announced* Atlas::newest_known(const Robot& robot) const {
   return nullptr;
 }
 
+/// Where the robot's map lies in a world, by its newest keyframes there: each of them alone is less certain.
+Eigen::Isometry3d Atlas::fit_map(const Robot& robot, MapId world) const {
+  constexpr int kKeyframes = 10;
+  std::vector<std::pair<const Eigen::Isometry3d*, const Eigen::Isometry3d*>> poses;  // here, of the robot
+  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
+    const Keyframe* keyframe = map_.find_keyframe(announced.keyframe);
+    if (keyframe == nullptr || worlds_.at(keyframe->map) != world) continue;
+    poses.emplace_back(&keyframe->T_world_camera, &announced.T_robot_camera);
+    if (poses.size() == kKeyframes) break;
+  }
+  const Eigen::Quaterniond first(poses.front().first->linear() * poses.front().second->linear().transpose());
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();  // of quaternions that are near one another
+  for (const auto& [here, own] : poses) {
+    const Eigen::Quaterniond q(here->linear() * own->linear().transpose());
+    sum += q.dot(first) < 0 ? -q.coeffs() : q.coeffs();
+  }
+  Eigen::Isometry3d T_world_robot = Eigen::Isometry3d::Identity();
+  T_world_robot.linear() = Eigen::Quaterniond(sum).normalized().toRotationMatrix();
+  for (const auto& [here, own] : poses)
+    T_world_robot.translation() +=
+        (here->translation() - T_world_robot.linear() * own->translation()) / static_cast<double>(poses.size());
+  return T_world_robot;
+}
+
 /// Whether newer keyframes do not show the same place already.
 bool Atlas::is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const {
   const auto cell = cells_.find(cell_of(world, T_world_robot * announced.T_robot_camera));
@@ -360,16 +384,15 @@ msg::AtlasState Atlas::state() const {
     entry.T_map_robot = entry.T_map_camera = msg::to_message(Eigen::Isometry3d::Identity());
     const Announced* newest = newest_known(robot);
     if (newest == nullptr || !is_joined(newest->keyframe)) continue;
-    const Eigen::Isometry3d T_map_robot =
-        map_.find_keyframe(newest->keyframe)->T_world_camera * newest->T_robot_camera.inverse();
+    const Eigen::Isometry3d T_map_robot = fit_map(robot, world_of(newest->keyframe));
     const Announced& last = robot.keyframes.rbegin()->second;
     entry.met = true;
     entry.stamp_ns = last.stamp_ns;
     entry.T_map_robot = msg::to_message(geometry::normalized(T_map_robot));
     entry.T_map_camera = msg::to_message(geometry::normalized(T_map_robot * last.T_robot_camera));
-    const slam::PoseGraphEdge edge = slam::meeting_edge(0, 0, T_map_robot);
     const double way_m = robot.way_m - robot.way_at_meeting_m;
-    const double sigma_m = edge.sigma_m + kDrift * way_m, sigma_rad = edge.sigma_rad + kDriftRadPerM * way_m;
+    const double sigma_m = config_.meeting_sigma_m + kDrift * way_m;
+    const double sigma_rad = config_.meeting_sigma_rad + kDriftRadPerM * way_m;
     for (std::size_t i = 0; i < 6; ++i) entry.covariance[7 * i] = i < 3 ? sigma_m * sigma_m : sigma_rad * sigma_rad;
   }
   return state;

@@ -33,7 +33,8 @@ struct AtlasConfig {
   int look_every = 1;
   int settled_after = 5;
   int submap_keyframes = 12;
-  double most_bend_m = 0.02, most_bend_share = 0.03;
+  double meeting_sigma_m = 0.01, meeting_sigma_rad = 0.005;
+  double most_bend_m = 0.05, most_bend_share = 0.05;
 
   void bind(auto& binder) {
     binder.field("cell_m", cell_m, {0.1, 10.0}, "keyframes so near that look the same way show one place");
@@ -41,6 +42,9 @@ struct AtlasConfig {
     binder.field("look_every", look_every, {1, 1000}, "keyframes of a robot that has met the joint map, per search");
     binder.field("settled_after", settled_after, {0, 100}, "later keyframes, before one is asked for");
     binder.field("submap_keyframes", submap_keyframes, {1, 50}, "sent to a robot that asks where it is");
+    binder.field("meeting_sigma_m", meeting_sigma_m, {1e-4, 1.0},
+                 "standard deviation of a place that two keyframes share");
+    binder.field("meeting_sigma_rad", meeting_sigma_rad, {1e-4, 1.0}, "the same for its rotation");
     binder.field("most_bend_m", most_bend_m, {0.0, 10.0},
                  "a meeting that changes another robot's motion by more than this and ...");
     binder.field("most_bend_share", most_bend_share, {0.0, 1.0}, "... this share of that motion is refused");
@@ -130,6 +134,7 @@ class Atlas {
   KeyframeId find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const;
   const Announced* choose_parent(const Robot& robot, KeyframeId id) const;
   const Announced* newest_known(const Robot& robot) const;
+  Eigen::Isometry3d fit_map(const Robot& robot, MapId world) const;
   bool is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const;
   void see_landmark(Robot& robot, const slam::Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id);
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);

@@ -133,8 +133,8 @@ slam::PoseGraph Atlas::make_graph(MapId world, std::vector<KeyframeId>& nodes) c
   }
   for (const Meeting& meeting : meetings_)
     if (index.contains(meeting.place) && index.contains(meeting.keyframe))
-      graph.edges.push_back(
-          slam::meeting_edge(index.at(meeting.place), index.at(meeting.keyframe), meeting.T_place_keyframe));
+      graph.edges.push_back({index.at(meeting.place), index.at(meeting.keyframe), meeting.T_place_keyframe,
+                             config_.meeting_sigma_m, config_.meeting_sigma_rad});
   return graph;
 }
 

@@ -49,9 +49,9 @@ class GraphBuilder {
     if (older.keyframe == newer.keyframe || !index_.contains(older.keyframe) || !index_.contains(newer.keyframe)) {
       return;
     }
-    result_.graph.edges.push_back(
-        meeting_edge(index_.at(older.keyframe), index_.at(newer.keyframe),
-                     older.T_keyframe_camera * loop.T_older_newer * newer.T_keyframe_camera.inverse()));
+    result_.graph.edges.push_back({index_.at(older.keyframe), index_.at(newer.keyframe),
+                                   older.T_keyframe_camera * loop.T_older_newer * newer.T_keyframe_camera.inverse(),
+                                   kLoopSigmaM, kLoopSigmaRad});
   }
 
   EssentialGraph take() { return std::move(result_); }
@@ -91,10 +91,6 @@ PoseGraphEdge motion_edge(std::uint32_t from, std::uint32_t to, const Eigen::Iso
   const double sigma_m = kSigmaM + kSigmaPerM * T_from_to.translation().norm();
   const double sigma_rad = kSigmaRad + kSigmaPerRad * geometry::rotation_angle_rad(T_from_to);
   return {from, to, T_from_to, doubt * sigma_m, doubt * sigma_rad};
-}
-
-PoseGraphEdge meeting_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to) {
-  return {from, to, T_from_to, kLoopSigmaM, kLoopSigmaRad};
 }
 
 EssentialGraph make_essential_graph(const Map& map, MapId component) {

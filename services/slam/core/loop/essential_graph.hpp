@@ -21,8 +21,6 @@ struct EssentialGraph {
 /// docs/theory/loop_closing.md Eq. (6).
 PoseGraphEdge motion_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to,
                           int shared_landmarks);
-/// The same of two keyframes at one place: measured over a whole neighbourhood of landmarks.
-PoseGraphEdge meeting_edge(std::uint32_t from, std::uint32_t to, const Eigen::Isometry3d& T_from_to);
 
 /// Spanning tree, strong covisibility and loops of one component; the motions of the first two are those that the map
 /// has now. The first keyframe is held. docs/theory/loop_closing.md, "Essential graph". Loops with removed
