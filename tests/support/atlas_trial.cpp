@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/atlas_trial.hpp"
 
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "tests/support/atlas_robot.hpp"
 
@@ -114,6 +119,84 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
   }
   result.ate_joint_m = rmse_m(all, alignment);
   result.counters = atlas.counters();
+  return result;
+}
+
+namespace {
+
+/// The keyframes of one walk.
+struct Walk {
+  std::vector<msg::KeyframeFeatures> features;
+  std::vector<Eigen::Isometry3d> T_map_camera;
+};
+
+Walk walk_once(const OfflineOptions& source) {
+  Walk walk;
+  OfflineOptions own = source;
+  own.on_end = [&](slam::SlamSystem& slam) {
+    slam.read_map([&](const slam::Map& map) {
+      for (const auto& [id, keyframe] : map.keyframes()) {
+        walk.features.push_back(slam::make_features(map, keyframe, true));
+        walk.T_map_camera.push_back(keyframe.T_world_camera);
+      }
+      return 0;
+    });
+  };
+  run_offline(own);
+  return walk;
+}
+
+double peak_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+}  // namespace
+
+ScaleResult run_scale_trial(const OfflineOptions& source, int robots, int seconds, const atlas::AtlasConfig& config) {
+  constexpr int kPerSecond = 2;
+  constexpr std::int64_t kSessionNs = 1, kPeriodNs = 1'000'000'000 / kPerSecond;
+  const Walk walk = walk_once(source);
+  atlas::Atlas atlas(config);
+  ScaleResult result;
+  std::vector<double> took_ms;
+  const std::clock_t cpu = std::clock();
+  const auto start = std::chrono::steady_clock::now();
+  for (int step = 0; step < seconds * kPerSecond; ++step) {
+    for (int robot = 0; robot < robots; ++robot) {
+      const std::string name = "robot" + std::to_string(robot);
+      const std::size_t at = static_cast<std::size_t>(step + 3 * robot) % walk.features.size();
+      const int round = (step + 3 * robot) / static_cast<int>(walk.features.size());
+      Eigen::Isometry3d T_own_map = Eigen::Isometry3d::Identity();
+      T_own_map.translation().x() = robot;
+      msg::KeyframeFeatures features = walk.features[at];
+      features.session_ns = kSessionNs;
+      features.keyframe_id = static_cast<std::uint32_t>(step);
+      features.stamp_ns = step * kPeriodNs + robot;
+      for (msg::KeyframeFeature& feature : features.features)
+        if (feature.landmark_id != msg::kNoId) feature.landmark_id += 100'000U * static_cast<std::uint32_t>(round);
+      msg::MapUpdate update;
+      update.session_ns = kSessionNs;
+      msg::MapKeyframe& entry = update.keyframes.emplace_back();
+      entry.keyframe_id = features.keyframe_id;
+      entry.stamp_ns = features.stamp_ns;
+      entry.T_world_camera = msg::to_message(T_own_map * walk.T_map_camera[at]);
+      const auto began = std::chrono::steady_clock::now();
+      atlas.follow(name, update);
+      atlas.add(name, features);
+      atlas.straighten();
+      took_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count());
+      ++result.keyframes;
+    }
+  }
+  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  result.p99_ms = eval::percentile(took_ms, 0.99);
+  result.longest_ms = *std::ranges::max_element(took_ms);
+  result.kept = atlas.map().keyframes().size();
+  result.peak_mb = peak_mb();
+  result.all_met = std::ranges::all_of(atlas.state().robots, &msg::AtlasRobot::met);
   return result;
 }
 

@@ -38,4 +38,19 @@ struct TrialResult {
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
                             const atlas::AtlasConfig& config = {});
 
+/// How an atlas bears many robots.
+struct ScaleResult {
+  std::uint64_t keyframes = 0;  ///< told
+  double cpu_s = 0, wall_s = 0;
+  double p99_ms = 0, longest_ms = 0;  ///< from a keyframe to the joint map with it
+  std::size_t kept = 0;               ///< keyframes in the joint map at the end
+  double peak_mb = 0;                 ///< of this process
+  bool all_met = false;
+};
+
+/// `robots` walk for `seconds`, faster than time, each again and again along the keyframes of one walk through
+/// `source`, with clocks and maps of their own and two keyframes a second.
+ScaleResult run_scale_trial(const OfflineOptions& source, int robots, int seconds,
+                            const atlas::AtlasConfig& config = {});
+
 }  // namespace rtd::test_support

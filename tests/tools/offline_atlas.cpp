@@ -24,6 +24,9 @@ int main(int argc, char** argv) {
   app.add_option("--bend-share", config.most_bend_share);
   app.add_option("--cell", config.cell_keyframes);
   app.add_option("--look", config.look_every);
+  int robots_at_once = 0, seconds = 3600;
+  app.add_option("--robots", robots_at_once, "Instead: so many robots along the first walk, again and again");
+  app.add_option("--seconds", seconds, "For so long")->capture_default_str();
   app.add_option("WALKS", walks, "SOURCE[ FIRST_FRAME FRAMES] of each robot")->required();
   CLI11_PARSE(app, argc, argv);
   std::vector<TrialRobot> robots;
@@ -34,6 +37,16 @@ int main(int argc, char** argv) {
     words >> robot.source >> robot.first_frame >> robot.max_frames;
   }
   try {
+    if (robots_at_once > 0) {
+      options.source = robots.front().source;
+      const ScaleResult result = run_scale_trial(options, robots_at_once, seconds, config);
+      std::cout << fmt::format(
+          "{} robots, {} s: {} keyframes told, {} kept, CPU {:.0f} s, p99 {:.1f} ms, longest {:.0f} ms, peak {:.0f} "
+          "MB{}\n",
+          robots_at_once, seconds, result.keyframes, result.kept, result.cpu_s, result.p99_ms, result.longest_ms,
+          result.peak_mb, result.all_met ? ", all met" : ", NOT ALL MET");
+      return 0;
+    }
     const TrialResult result = run_atlas_trial(robots, options, config);
     for (const TrialResult::Robot& robot : result.robots)
       std::cout << fmt::format(
