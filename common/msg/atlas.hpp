@@ -12,7 +12,7 @@
 #include "common/msg/frame_size.hpp"
 #include "common/msg/tracking.hpp"
 
-/// What robots and the atlas tell each other (docs/atlas.md). The atlas follows `rtd/map` of each robot, which says
+/// What robots and the atlas send each other (docs/atlas.md). The atlas follows `rtd/map` of each robot, which says
 /// which keyframes there are and where; it asks for the features of those that it does not have.
 namespace rtd::msg {
 

@@ -29,13 +29,13 @@ inline slam::MapContents map_of(const msg::Submap& submap) {
   return slam::read_map(io::MemorySource(std::as_bytes(std::span(submap.file))));
 }
 
-/// What the slam of a robot tells an atlas: what changed in its map, and what it is asked for.
+/// What the slam of a robot sends to an atlas: what changed in its map, and what it is asked for.
 class AtlasTeller {
  public:
   AtlasTeller(std::string name, slam::SlamSystem& slam) : name_(std::move(name)), slam_(slam) {}
   const std::string& name() const { return name_; }
 
-  void tell(atlas::Atlas& atlas) {
+  void report(atlas::Atlas& atlas) {
     const slam::MapView view = slam_.map_view();
     const slam::MapNews news = changes_.update(view);
     for (msg::MapUpdate& update : slam::make_map_updates(view, news)) {
@@ -56,7 +56,7 @@ class AtlasTeller {
     if (atlas.straighten()) straighten_s.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   /// As for a reader that is new.
-  void forget_told() {
+  void forget_reported() {
     changes_.forget();
     ++session_ns;
   }
@@ -91,7 +91,7 @@ class AtlasRobot {
   slam::SlamSystem& slam() { return slam_; }
   AtlasTeller& teller() { return teller_; }
 
-  /// `frames` more, told to the atlas twice a second.
+  /// `frames` more, reported to the atlas twice a second.
   void walk(int frames, atlas::Atlas& atlas) {
     for (int i = 0; i < frames; ++i) {
       const std::uint64_t seq = first_ + seen_++;
@@ -99,7 +99,7 @@ class AtlasRobot {
       frame->stamp_ns += static_cast<std::int64_t>(first_);  // robots have clocks of their own
       const slam::SlamOutput output = slam_.process(*frame);
       if (seen_ == 1) T_map_first_ = output.result.T_world_camera;
-      if (seen_ % 15 == 0) teller_.tell(atlas);
+      if (seen_ % 15 == 0) teller_.report(atlas);
     }
   }
 

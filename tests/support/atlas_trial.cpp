@@ -56,7 +56,7 @@ double rmse_m(const Pairs& pairs, const eval::Alignment& alignment) {
 
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
                             const atlas::AtlasConfig& config) {
-  constexpr int kTellEvery = 15;
+  constexpr int kReportEvery = 15;
   atlas::Atlas atlas(config);
   TrialResult result;
   std::vector<Pairs> pairs;
@@ -74,7 +74,7 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
     std::int64_t first_ns = 0, last_ns = 0;
     own.on_start = [&](slam::SlamSystem& slam) { teller.emplace(robot.name, slam); };
     own.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
-      if (frames % kTellEvery != 0 || entry.first_pose_s >= 0) return;
+      if (frames % kReportEvery != 0 || entry.first_pose_s >= 0) return;
       const auto submap = atlas.locate(query_of(*make_feature_frame(frame.image, features)));
       if (first_ns == 0) first_ns = frame.image.stamp_ns;
       if (!submap) return;
@@ -84,9 +84,9 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
     };
     own.on_frame = [&](const slam::SlamOutput& output) {
       last_ns = output.result.stamp_ns;
-      if (++frames % kTellEvery == 0) teller->tell(atlas);
+      if (++frames % kReportEvery == 0) teller->report(atlas);
     };
-    own.on_end = [&](slam::SlamSystem&) { teller->tell(atlas); };
+    own.on_end = [&](slam::SlamSystem&) { teller->report(atlas); };
     const OfflineReport report = run_offline(own);
     pairs.emplace_back().add(eval::ate(report.trajectory, report.groundtruth));
     if (first.stamp_ns != 0) {

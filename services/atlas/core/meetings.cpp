@@ -5,7 +5,6 @@
 
 #include "common/geometry/se3.hpp"
 #include "services/atlas/core/atlas.hpp"
-#include "services/slam/core/loop/essential_graph.hpp"
 
 namespace rtd::atlas {
 
@@ -90,7 +89,7 @@ void Atlas::join_worlds(MapId kept, MapId joined, const Eigen::Isometry3d& T_kep
   sort_into_cells();
 }
 
-/// As the robot that made both has it; empty where nobody knows it.
+/// As the robot that made both has it; empty where no robot here has it.
 std::optional<Eigen::Isometry3d> Atlas::motion_by_robot(KeyframeId from, KeyframeId to) const {
   const Source& source = sources_.at(to);
   const auto robot = robots_.find(source.robot);

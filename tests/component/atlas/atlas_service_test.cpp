@@ -22,7 +22,7 @@ using test_support::FeatureWorld;
 using test_support::Inbox;
 using test_support::query_of;
 
-/// The part of a robot's slam that tells of its map.
+/// The part of a robot's slam that reports its map.
 class Robot {
  public:
   Robot(const bus::Bus& bus, const std::string& name, const FeatureWorld& world, std::uint64_t first_seq)
@@ -119,7 +119,7 @@ TEST_F(AtlasServiceTest, answers_a_robot_that_asks_where_it_is) {
   bert_->ask_where();
   ASSERT_TRUE(bert_->submaps.wait_count(1));
   EXPECT_GE(test_support::map_of(*bert_->submaps.all().back()).keyframes.size(), 3U);
-  EXPECT_TRUE(anna_->submaps.all().empty()) << "nobody else";
+  EXPECT_TRUE(anna_->submaps.all().empty()) << "no other robot";
 }
 
 TEST_F(AtlasServiceTest, saves_the_map_and_forgets_a_robot) {
@@ -137,7 +137,7 @@ TEST_F(AtlasServiceTest, saves_the_map_and_forgets_a_robot) {
   EXPECT_GT(without, 0U);
 }
 
-TEST_F(AtlasServiceTest, goes_on_with_the_map_that_it_saved) {
+TEST_F(AtlasServiceTest, continues_with_the_map_that_it_saved) {
   let_them_meet();
   EXPECT_TRUE(call("atlas/save", "").success);
   const bus::CommandAnswer loaded = call("atlas/load", "");
@@ -145,7 +145,7 @@ TEST_F(AtlasServiceTest, goes_on_with_the_map_that_it_saved) {
   ASSERT_TRUE(atlas_.wait([](const auto& all) {
     const auto& robots = all.back()->robots;
     return robots.size() == 2 && std::ranges::all_of(robots, &msg::AtlasRobot::met) && robots[1].meetings == 0;
-  })) << "their keyframes are recognised, without meeting anew";
+  })) << "their keyframes are recognised, without another meeting";
   EXPECT_EQ(atlas_.all().back()->robots[0].missing, 0U);
 }
 

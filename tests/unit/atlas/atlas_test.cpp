@@ -80,10 +80,10 @@ TEST(Atlas, a_robot_can_be_taken_out_with_all_it_brought) {
   EXPECT_EQ(atlas.map().check_invariants(), "");
   EXPECT_LT(error_m(atlas, anna, bert), 0.01) << "the frame stays";
   EXPECT_LT(error_m(atlas, anna, carl), 0.01);
-  EXPECT_EQ(atlas.forget("nobody"), 0U);
+  EXPECT_EQ(atlas.forget("dora"), 0U);
 }
 
-TEST(Atlas, a_map_that_was_saved_goes_on_with_the_same_robots) {
+TEST(Atlas, a_map_that_was_saved_continues_with_the_same_robots) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas before({});
   AtlasRobot anna("anna", world, 0), bert("bert", world, 250);
@@ -93,8 +93,8 @@ TEST(Atlas, a_map_that_was_saved_goes_on_with_the_same_robots) {
   Atlas after({});
   after.restore(slam::read_map(io::MemorySource(file)), before.owners());
   EXPECT_EQ(to_map_file(after.contents()), file);
-  anna.teller().forget_told();
-  anna.teller().tell(after);
+  anna.teller().forget_reported();
+  anna.teller().report(after);
   EXPECT_EQ(after.counters().keyframes, 0U) << "what is in the map is not asked for again";
   anna.walk(200, after);
   EXPECT_GT(after.counters().keyframes, 0U);
@@ -116,7 +116,7 @@ TEST(Atlas, old_keyframes_of_a_place_give_way_to_newer_ones) {
   EXPECT_EQ(atlas.map().check_invariants(), "");
 }
 
-TEST(Atlas, a_robot_with_a_false_map_bends_nobody_elses) {
+TEST(Atlas, a_robot_with_a_false_map_bends_no_other_map) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas atlas({});
   AtlasRobot anna("anna", world, 0), bert("bert", world, 250);
@@ -147,7 +147,7 @@ TEST(Atlas, takes_nothing_that_cannot_be) {
   anna.walk(60, atlas);
   msg::KeyframeFeatures features = query_of(*world.view(90));
   EXPECT_FALSE(atlas.add("anna", features)) << "never announced";
-  EXPECT_FALSE(atlas.add("nobody", features));
+  EXPECT_FALSE(atlas.add("carl", features));
   features.width = 0;
   EXPECT_FALSE(atlas.locate(features));
   features = query_of(*world.view(90));
