@@ -132,6 +132,14 @@ inline constexpr char kOutPrefix[] = "out:";  ///< and the topic
 inline constexpr char kInPrefix[] = "in:";    ///< and the topic
 inline constexpr char kLost[] = "lost";
 
+// Atlas
+inline constexpr char kRobotsMet[] = "robots_met";              ///< robots that are in the joint map
+inline constexpr char kMeetings[] = "meetings";                 ///< of robots, confirmed
+inline constexpr char kMeetingsRefused[] = "meetings_refused";  ///< of these, taken back: they bent the map of another
+inline constexpr char kCorrections[] = "corrections";           ///< of the joint map
+inline constexpr char kAskedWhere[] = "asked_where";            ///< frames of robots that asked for their place
+inline constexpr char kLocated[] = "located";                   ///< of these, found
+
 // Viewer
 inline constexpr char kClients[] = "clients";
 inline constexpr char kClientsReady[] = "clients_ready";  ///< that show what comes: a page needs seconds to load

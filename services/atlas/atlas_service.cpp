@@ -6,12 +6,13 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "common/geometry/se3.hpp"
+#include "common/io/input_file.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/config.hpp"
+#include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "services/slam/map_file.hpp"
 #include "services/slam/slam_messages.hpp"
@@ -19,7 +20,7 @@
 namespace rtd::atlas {
 namespace {
 
-using service::ConfigError;
+namespace metric = service::metric;
 
 constexpr std::chrono::milliseconds kTick{20};
 constexpr std::int64_t kSecondNs = 1'000'000'000, kPublishNs = kSecondNs / 2, kPointsNs = 2 * kSecondNs,
@@ -35,17 +36,21 @@ std::filesystem::path owners_file(const std::string& map_file) {
 }
 
 std::map<std::string, std::vector<KeyframeId>> read_owners(const std::string& map_file) {
-  std::ifstream in(owners_file(map_file));
-  if (!in) return {};
+  constexpr io::ReadAs kOwners{"owners of keyframes", 64 * io::kMegabyte};
+  const std::filesystem::path file = owners_file(map_file);
+  if (!std::filesystem::exists(file)) return {};
+  std::string cause;
   try {
-    return nlohmann::json::parse(in).get<std::map<std::string, std::vector<KeyframeId>>>();
+    return nlohmann::json::parse(io::read_file(file, kOwners)).get<std::map<std::string, std::vector<KeyframeId>>>();
+  } catch (const io::IoError& error) {
+    cause = error.what();
   } catch (const nlohmann::json::exception&) {
-    SPDLOG_WARN(
-        "event=owners_unreadable file={} cause=\"it is not JSON as atlas writes it\" effect=\"robots in this "
-        "map cannot be forgotten one by one\"",
-        owners_file(map_file).string());
-    return {};
+    cause = "it is not JSON as atlas writes it";
   }
+  SPDLOG_WARN(
+      "event=owners_unreadable file={} cause=\"{}\" effect=\"robots in this map cannot be forgotten one by one\"",
+      file.string(), cause);
+  return {};
 }
 
 Eigen::Isometry3d to_isometry(const msg::TransformStamped& stamped) {
@@ -84,7 +89,7 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
       points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),
       tf_writer_(runtime.bus.writer(bus::topics::kTfStatic)),
       server_(std::in_place, runtime.bus) {
-  if (!config_.map_file.empty() && std::filesystem::exists(config_.map_file)) load(config_.map_file);
+  load_at_start();
   if (config_.robots.empty()) finder_.emplace(runtime.bus_options, bus::topics::kMap);
   for (const std::string& robot : config_.robots) bus::require_robot_name(robot);
   using bus::CommandKind;
@@ -264,20 +269,29 @@ void AtlasService::publish_points() {
 void AtlasService::report(const msg::AtlasState& state) {
   const auto met = std::ranges::count_if(state.robots, &msg::AtlasRobot::met);
   service::Heartbeat& heartbeat = runtime_.heartbeat;
-  heartbeat.set_metric("robots", static_cast<double>(state.robots.size()));
-  heartbeat.set_metric("robots_met", static_cast<double>(met));
-  heartbeat.set_metric("keyframes", static_cast<double>(atlas_->map().keyframes().size()));
-  heartbeat.set_metric("landmarks", static_cast<double>(atlas_->map().landmark_count()));
-  heartbeat.set_metric("meetings", static_cast<double>(atlas_->counters().meetings));
-  heartbeat.set_metric("meetings_refused", static_cast<double>(atlas_->counters().refused));
-  heartbeat.set_metric("corrections", static_cast<double>(atlas_->counters().corrections));
-  heartbeat.set_metric("located", static_cast<double>(located_));
-  heartbeat.set_metric("asked_where", static_cast<double>(asked_where_));
+  heartbeat.set_metric(metric::kRobots, static_cast<double>(state.robots.size()));
+  heartbeat.set_metric(metric::kRobotsMet, static_cast<double>(met));
+  heartbeat.set_metric(metric::kKeyframes, static_cast<double>(atlas_->map().keyframes().size()));
+  heartbeat.set_metric(metric::kLandmarks, static_cast<double>(atlas_->map().landmark_count()));
+  heartbeat.set_metric(metric::kMeetings, static_cast<double>(atlas_->counters().meetings));
+  heartbeat.set_metric(metric::kMeetingsRefused, static_cast<double>(atlas_->counters().refused));
+  heartbeat.set_metric(metric::kCorrections, static_cast<double>(atlas_->counters().corrections));
+  heartbeat.set_metric(metric::kLocated, static_cast<double>(located_));
+  heartbeat.set_metric(metric::kAskedWhere, static_cast<double>(asked_where_));
   const std::string message = fmt::format("{} of {} robots in the joint map", met, state.robots.size());
   if (!trouble_.empty()) {
     heartbeat.set_state(msg::ServiceState::kDegraded, trouble_);
   } else {
     heartbeat.set_state(state.robots.empty() ? msg::ServiceState::kReady : msg::ServiceState::kRunning, message);
+  }
+}
+
+void AtlasService::load_at_start() {
+  if (config_.map_file.empty() || !std::filesystem::exists(config_.map_file)) return;
+  try {
+    load(config_.map_file);
+  } catch (const std::runtime_error& error) {  // it cannot be read, or is no map
+    throw service::ConfigError(std::string("atlas.map: ") + error.what());
   }
 }
 
@@ -307,7 +321,7 @@ bus::CommandAnswer AtlasService::save_by_command(const std::string& name) {
                       : save(maps_.to_write(name).string(), io::NamedBy::kProgram);
 }
 
-/// Robots tell all they have once more to readers that are new.
+/// To new readers, robots send all that they have once more.
 bus::CommandAnswer AtlasService::load_by_command(const std::string& name) {
   if (name.empty() && config_.map_file.empty()) return {false, "name a map: atlas was started without --map"};
   load(name.empty() ? config_.map_file : maps_.to_read(name).string());

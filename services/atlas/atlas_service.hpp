@@ -47,14 +47,14 @@ struct ServiceConfig {
     binder.field("maps_dir", maps_folder, "folder of the maps that atlas/save and atlas/load may name; empty: none")
         .option("--maps-dir");
     binder.field("map_frame", map_frame, "frame of the joint map");
-    binder.field("robots", robots, "names of those that are listened to; empty: all in the domain").option("--robots");
+    binder.field("robots", robots, "names of the robots whose maps are joined; empty: all in the domain").option("--robots");
     binder.field("checkpoint_s", checkpoint_s, {1, 86'400}, "between two saves of a map that grows");
     binder.field("request_keyframes", request_keyframes, {1, 1000}, "asked of a robot at a time");
   }
 };
 
 /// Joins the maps of the robots of a domain, which it finds by their rtd/map: docs/atlas.md. Nothing waits for it.
-/// Each robot tells it what it maps; it tells them where they are. One worker; messages wait in a bounded queue, of
+/// Each robot sends it what it maps and learns from it where it is. One worker; messages wait in a bounded queue, of
 /// which those that can be asked for again are dropped first.
 class AtlasService {
  public:
@@ -100,6 +100,7 @@ class AtlasService {
   void publish_transforms(const msg::AtlasState& state);
   void publish_points();
   void report(const msg::AtlasState& state);
+  void load_at_start();
   void load(const std::string& file);
   bus::CommandAnswer save(const std::string& file, io::NamedBy named_by);
   bus::CommandAnswer save_by_command(const std::string& name);

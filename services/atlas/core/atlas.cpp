@@ -10,7 +10,6 @@
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/atlas/core/submap.hpp"
-#include "services/slam/core/loop/essential_graph.hpp"
 
 namespace rtd::atlas {
 

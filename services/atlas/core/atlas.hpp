@@ -14,10 +14,9 @@
 
 #include "common/msg/atlas.hpp"
 #include "common/msg/map_update.hpp"
+#include "services/slam/core/loop/essential_graph.hpp"
 #include "services/slam/core/loop/loop_detector.hpp"
 #include "services/slam/core/map/trajectory.hpp"
-#include "services/slam/core/optimize/pose_graph.hpp"
-#include "services/slam/core/place/keyframe_database.hpp"
 
 namespace rtd::atlas {
 

@@ -18,10 +18,13 @@ ACROSS_SERVICES = (
     ("services/launcher/doctor/", "services/detector/core/"),  # tries the engines
     ("services/launcher/doctor/", "services/camera/openni2/openni2_device.hpp"),  # looks for cameras
     ("services/launcher/doctor/", "services/camera/realsense/realsense_device.hpp"),
+    ("services/atlas/", "services/slam/core/"),  # joins maps of slam, by its place recognition and pose graph
+    ("services/atlas/", "services/slam/map_file.hpp"),
+    ("services/atlas/", "services/slam/slam_messages.hpp"),
     ("services/maps/", "services/slam/core/"),  # shows maps of slam
     ("services/maps/", "services/slam/map_file.hpp"),
 )
-MOST_ACROSS_SERVICES = 11
+MOST_ACROSS_SERVICES = 16
 MOST_BOTH_WAYS = 7
 
 

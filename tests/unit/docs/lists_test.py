@@ -107,12 +107,14 @@ class Lists(unittest.TestCase):
         self.assert_none_but(MODES, lists_modes)
 
     def test_options_of_a_run_are_declared_once(self):
-        """Tools that mean something else by a word are left out: rtd-eval's --model, rtd-keystore's --robot."""
+        """Programs that mean something else by a word are left out: rtd-eval's --model, rtd-keystore's --robot, and
+        rtd-atlas' --map, which is also written."""
         shared = [flags for path in OPTIONS for flags in DECLARED.findall(text_of(path))]
         self.assertIn("--camera-in-base", shared)
         self.assertEqual(len(shared), len(set(shared)))
         for path in SOURCES:
-            if path in OPTIONS or path.startswith(("services/evaluation/", "services/keystore/")):
+            if path in OPTIONS or path.startswith(("services/atlas/", "services/evaluation/",
+                                                                  "services/keystore/")):
                 continue
             again = set(shared) & set(ADDED.findall(text_of(path)))
             self.assertFalse(again, f"{path}: the setting has this option already")
