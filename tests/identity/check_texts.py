@@ -28,8 +28,8 @@ HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 GOLDEN = HERE / "golden"
 COMMANDS = ("run", "demo", "doctor", "ablate", "benchmark", "eval", "report", "eval-detector", "convert", "info", "diff",
-            "map", "export", "topics", "call", "keystore", "link", "record", "replay", "viewer")
-SERVICES = ("camera", "detector", "filter", "slam", "dense", "record", "replay", "link", "viewer")
+            "map", "export", "topics", "call", "keystore", "atlas", "link", "record", "replay", "viewer")
+SERVICES = ("camera", "detector", "filter", "slam", "dense", "record", "replay", "link", "atlas", "viewer")
 
 
 class Texts:

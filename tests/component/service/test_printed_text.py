@@ -9,7 +9,7 @@ import unittest
 
 FOLDER = pathlib.Path(sys.argv.pop())
 PROGRAMS = sorted(path for path in FOLDER.glob("rtd*") if path.is_file())
-SECTIONS = ["bus", "camera", "dense", "detector", "filter", "link", "record", "replay", "slam", "viewer"]
+SECTIONS = ["atlas", "bus", "camera", "dense", "detector", "filter", "link", "record", "replay", "slam", "viewer"]
 
 
 def printed(text):

@@ -18,7 +18,7 @@ sed -i "s|/usr/local/bin/|$bin/|; s|^User=.*|User=root|; s|^Group=.*|Group=root|
   "$folder/rtd-slam@.service"
 common="$(sed -n 's|^RTD_COMMON_OPTIONS=||p' "$units/rtd-slam.conf")"
 failed=0
-for service in camera detector filter slam dense record viewer link; do
+for service in camera detector filter slam dense record viewer link atlas; do
   unit="rtd-slam@$service.service"
   cp "$folder/rtd-slam@.service" "$folder/$unit"
   problems="$(SYSTEMD_UNIT_PATH="$folder:" systemd-analyze verify "$folder/$unit" 2>&1 | grep "rtd-slam" || true)"

@@ -44,7 +44,7 @@ version="$(sed -n 's/^set(CPACK_PACKAGE_VERSION "\(.*\)")$/\1/p' "$build/CPackCo
 . /etc/os-release
 [[ "$version" = *"+${ID:0:3}$VERSION_ID" ]] || fail "version $version does not name this distribution"
 make_packages "$version" "$work/1"
-holds rtd-slam usr/bin/rtd usr/bin/rtd-slam usr/bin/rtd-link usr/lib/systemd/system/rtd-slam@.service \
+holds rtd-slam usr/bin/rtd usr/bin/rtd-slam usr/bin/rtd-link usr/bin/rtd-atlas usr/lib/systemd/system/rtd-slam@.service \
   usr/lib/systemd/system/rtd-slam@camera.service.d/devices.conf usr/lib/sysusers.d/rtd-slam.conf \
   usr/lib/udev/rules.d/60-rtd-cameras.rules etc/rtd-slam/rtd-slam.conf usr/share/doc/rtd-slam/copyright
 holds rtd-slam-viewer usr/bin/rtd-viewer
