@@ -256,6 +256,7 @@ TEST(record_builder, names_the_services_that_report_and_have_not_finished) {
   EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "a recorder disturbs no run";
   builder.add(status_of("detector_box", 12, {}));
   builder.add(status_of("link", 13, {}));
+  builder.add(status_of("atlas", 14, {}));
   EXPECT_EQ(builder.active_services(), "filter (pid 7), slam (pid 8)") << "it says itself whom it serves";
   builder.add(status_of("detector", 11, {}));
   EXPECT_EQ(builder.active_services(), "detector (pid 11), filter (pid 7), slam (pid 8)");

@@ -237,7 +237,8 @@ std::optional<std::string> RecordBuilder::take_notice() {
 
 bool RecordBuilder::disturbs_a_run(const std::string& name, const Service& service, const Tolerated& tolerated) {
   // A detector for several robots sends a "detector" heartbeat next to its own to each robot that it serves.
-  const bool harmless = name == "record" || name == "detector_box" || name == "link" || name == "viewer";
+  const bool harmless =
+      name == "record" || name == "detector_box" || name == "link" || name == "viewer" || name == "atlas";
   if (service.state == msg::ServiceState::kFinished || harmless) return false;
   if (name == "detector") return !tolerated.detector;
   if (name != "replay") return true;
