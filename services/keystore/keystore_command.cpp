@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <ostream>
 
@@ -78,7 +79,7 @@ bool print_info(const std::string& folder, bool verbose, std::int64_t now_s, std
 constexpr std::int64_t kDay_s = 24 * 3600;
 constexpr std::int64_t kClockMargin_s = 3600;  // the clocks of two hosts may differ
 constexpr int kCaDays = 3650;
-constexpr const char* kSharedRole = "detector";  // one may serve several robots
+constexpr std::array kSharedRoles = {"detector", "atlas"};  // one process may serve several robots
 
 security::Validity from_now(std::int64_t now_s, int days) {
   return {now_s - kClockMargin_s, now_s + days * kDay_s};
@@ -104,15 +105,25 @@ void append(std::vector<std::string>& topics, const std::vector<std::string>& mo
   topics.insert(topics.end(), more.begin(), more.end());
 }
 
-/// What the detector that serves these robots may do besides.
-security::TopicGrant served_topics(const std::vector<std::string>& robots) {
+/// What a detector or an atlas that serves these robots may do besides.
+security::TopicGrant served_topics(const std::string& role, const std::vector<std::string>& robots) {
   security::TopicGrant grant;
   for (const std::string& robot : robots) {
-    const security::TopicGrant own = enclave_of(kSharedRole, robot).topics;
+    const security::TopicGrant own = enclave_of(role, robot).topics;
     append(grant.publish, own.publish);
     append(grant.subscribe, own.subscribe);
   }
   return grant;
+}
+
+/// The enclave of a role that all robots share, if it is such a role.
+security::EnclaveRequest enclave_serving(const std::string& role, const std::vector<std::string>& robots) {
+  security::EnclaveRequest enclave = enclave_of(role);
+  if (std::ranges::find(kSharedRoles, role) == kSharedRoles.end()) return enclave;
+  const auto [publish, subscribe] = served_topics(role, robots);
+  append(enclave.topics.publish, publish);
+  append(enclave.topics.subscribe, subscribe);
+  return enclave;
 }
 
 /// An enclave for each role of each robot.
@@ -137,13 +148,7 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
   }
   security::create_keystore(folder, options);
   std::vector<security::EnclaveRequest> enclaves;
-  for (const std::string& role : bus::roles()) {
-    enclaves.push_back(enclave_of(role));
-    if (role != kSharedRole) continue;
-    const auto [publish, subscribe] = served_topics(request.robots);
-    append(enclaves.back().topics.publish, publish);
-    append(enclaves.back().topics.subscribe, subscribe);
-  }
+  for (const std::string& role : bus::roles()) enclaves.push_back(enclave_serving(role, request.robots));
   for (security::EnclaveRequest& enclave : enclaves_of(request.robots)) enclaves.push_back(std::move(enclave));
   security::add_enclaves(folder, enclaves, options.validity, options.governance.domains);
   out << fmt::format(
@@ -152,15 +157,23 @@ void create(const KeystoreRequest& request, std::int64_t now_s, std::ostream& ou
       folder, enclaves.size(), security::to_utc(options.validity.not_after_s).substr(0, 10), folder);
 }
 
-/// Their enclaves, and theirs to be served by the detector that they share.
+/// Their enclaves, and the right of the detector and the atlas that they share to serve them.
 void add_robots(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
   const std::string folder = folder_of(request);
   const std::vector<security::EnclaveRequest> enclaves = enclaves_of(request.robots);
   const security::Validity validity = from_now(now_s, request.days);
   security::add_enclaves(folder, enclaves, validity, domains_of(request));
-  security::renew_enclave(folder, bus::enclave_of_robot(kSharedRole, ""), validity, served_topics(request.robots));
+  const std::vector<std::string> there = security::enclaves_in({folder});
+  for (const char* role : kSharedRoles) {
+    const std::string name = bus::enclave_of_robot(role, "");
+    if (std::ranges::find(there, name) != there.end()) {
+      security::renew_enclave(folder, name, validity, served_topics(role, request.robots));
+    } else {  // the keystore is older than the role
+      security::add_enclaves(folder, {enclave_serving(role, request.robots)}, validity, domains_of(request));
+    }
+  }
   out << fmt::format("{}: {} enclaves for {}; /rtd/{} may serve them\n", folder, enclaves.size(),
-                     fmt::join(request.robots, ", "), kSharedRole);
+                     fmt::join(request.robots, ", "), fmt::join(kSharedRoles, " and /rtd/"));
 }
 
 void add(const KeystoreRequest& request, std::int64_t now_s, std::ostream& out) {
@@ -212,8 +225,9 @@ void add_domain(CLI::App& sub, KeystoreRequest& request) {
 }
 
 void add_robots_option(CLI::App& sub, KeystoreRequest& request) {
-  sub.add_option("--robot", request.robots,
-                 "Enclaves /rtd/NAME/... for a robot of this name, which /rtd/detector may serve (repeatable)");
+  sub.add_option(
+      "--robot", request.robots,
+      "Enclaves /rtd/NAME/... for a robot of this name; /rtd/detector and /rtd/atlas may serve it (repeatable)");
 }
 
 void add_topics(CLI::App& sub, KeystoreRequest& request) {

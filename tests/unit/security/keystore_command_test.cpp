@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <sstream>
 
 #include "common/bus/topic_roles.hpp"
@@ -77,7 +78,7 @@ TEST_F(KeystoreCommandTest, adds_an_enclave_like_another_with_further_topics) {
   EXPECT_FALSE(security::matches_any(added.permissions.topics.publish, "rt/slam/pose"));
 }
 
-TEST_F(KeystoreCommandTest, robots_have_enclaves_of_their_own_and_share_the_detector) {
+TEST_F(KeystoreCommandTest, robots_have_enclaves_of_their_own_and_share_detector_and_atlas) {
   const auto grant = [this](const std::string& name) {
     return security::open_enclave(request_.folder, name, 0, kNow_s).permissions.topics;
   };
@@ -91,13 +92,31 @@ TEST_F(KeystoreCommandTest, robots_have_enclaves_of_their_own_and_share_the_dete
     EXPECT_TRUE(security::matches_any(grant("/rtd/" + robot + "/camera").publish, "rtd/" + robot + "/frame"));
     EXPECT_TRUE(security::matches_any(grant("/rtd/detector").subscribe, jpegs));
     EXPECT_TRUE(security::matches_any(grant("/rtd/detector").publish, "rt/" + robot + "/detector/detections"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/atlas").subscribe, "rtd/" + robot + "/map"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/atlas").subscribe, "rtd/" + robot + "/keyframe_features"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/atlas").publish, "rtd/" + robot + "/submap"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/" + robot + "/slam").publish, "rtd/" + robot + "/keyframe_features"));
+    EXPECT_TRUE(security::matches_any(grant("/rtd/" + robot + "/slam").subscribe, "rtd/" + robot + "/submap"));
+    for (const std::string topic : {"/keyframe_features", "/map"})
+      EXPECT_FALSE(security::matches_any(grant("/rtd/" + robot + "/camera").publish, "rtd/" + robot + topic));
   }
+  EXPECT_FALSE(security::matches_any(grant("/rtd/anna/slam").publish, "rtd/bert/keyframe_features"));
   EXPECT_FALSE(security::matches_any(grant("/rtd/anna/slam").publish, "rt/bert/slam/pose"));
   EXPECT_FALSE(security::matches_any(grant("/rtd/anna/slam").publish, "rt/slam/pose"));
   EXPECT_TRUE(security::matches_any(grant("/rtd/detector").publish, "rt/detector/detections")) << "and it alone";
   request_.robots = {"b/c"};
   EXPECT_EQ(run(Action::kAdd), 2);
   EXPECT_THAT(err_.str(), HasSubstr("b/c cannot be a robot's name"));
+}
+
+TEST_F(KeystoreCommandTest, a_robot_added_to_a_keystore_without_an_atlas_brings_its_enclave) {
+  ASSERT_EQ(run(Action::kCreate), 0) << err_.str();
+  std::filesystem::remove_all(std::filesystem::path(request_.folder) / "enclaves/rtd/atlas");
+  request_.robots = {"anna"};
+  ASSERT_EQ(run(Action::kAdd), 0) << err_.str();
+  const auto atlas = security::open_enclave(request_.folder, "/rtd/atlas", 0, kNow_s).permissions.topics;
+  EXPECT_TRUE(security::matches_any(atlas.publish, "rtd/atlas"));
+  EXPECT_TRUE(security::matches_any(atlas.subscribe, "rtd/anna/keyframe_features"));
 }
 
 TEST_F(KeystoreCommandTest, info_of_no_keystore_says_how_to_make_one) {
