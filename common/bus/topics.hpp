@@ -38,7 +38,7 @@ inline constexpr Topic<msg::CompressedImage> kDepthJpeg{"rt/camera/depth/preview
 inline constexpr Topic<msg::CameraInfo> kCameraInfo{"rt/camera/color/camera_info", QosProfile::kLatched};
 inline constexpr Topic<msg::PoseStamped> kGroundTruth{"rt/camera/ground_truth", QosProfile::kPose};
 inline constexpr Topic<msg::Detection2DArray> kDetections{"rt/detector/detections", QosProfile::kDetections};
-/// The pixels of the persons among the detections with the same stamp (common/vision/person_masks.hpp).
+/// The pixels of the persons among the detections with the same stamp (common/vision/detection.hpp).
 inline constexpr Topic<msg::Image> kPersonMasks{"rt/detector/masks", QosProfile::kDetections};
 inline constexpr Topic<msg::Image> kDynamicMask{"rt/filter/dynamic_mask", QosProfile::kDetections};
 inline constexpr Topic<msg::Detection3DArray> kMoverBoxes{"rt/filter/movers", QosProfile::kDetections};

@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "common/msg/stamps.hpp"
-#include "common/vision/person_masks.hpp"
+#include "common/vision/detection.hpp"
 
 namespace rtd::recorder {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "common/vision/image_codecs.hpp"
-#include "common/vision/person_masks.hpp"
+#include "common/vision/detection.hpp"
 #include "services/recorder/people/blur_line.hpp"
 #include "tests/support/people_messages.hpp"
 
