@@ -26,7 +26,7 @@ constexpr std::chrono::milliseconds kTick{20};
 constexpr std::int64_t kSecondNs = 1'000'000'000, kPublishNs = kSecondNs / 2, kPointsNs = 2 * kSecondNs,
                        kStraightenNs = kSecondNs / 2;
 constexpr std::int64_t kAskAgainNs = 2 * kSecondNs;  ///< what was asked for and has not come
-constexpr std::size_t kMostWaiting = 4096;
+constexpr std::size_t kMostWaiting = 4096, kMostRobots = 200;
 /// A transform that has changed by less is the same.
 constexpr double kSame_m = 0.001, kSame_rad = 0.0005;
 
@@ -95,9 +95,9 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
   using bus::CommandKind;
   using bus::CommandRequest;
   server_->offer("atlas/save", CommandKind::kText,
-               [this](const CommandRequest& r) { return save_by_command(r.argument); });
+                 [this](const CommandRequest& r) { return save_by_command(r.argument); });
   server_->offer("atlas/load", CommandKind::kText,
-               [this](const CommandRequest& r) { return load_by_command(r.argument); });
+                 [this](const CommandRequest& r) { return load_by_command(r.argument); });
   server_->offer("atlas/forget", CommandKind::kText, [this](const CommandRequest& r) { return forget(r.argument); });
 }
 
@@ -141,7 +141,7 @@ void AtlasService::find_robots() {
   const std::set<std::string> robots =
       finder_ ? finder_->robots() : std::set<std::string>(config_.robots.begin(), config_.robots.end());
   for (const std::string& robot : robots) {
-    if (lanes_.contains(robot) || forgotten_.contains(robot)) continue;
+    if (lanes_.contains(robot) || forgotten_.contains(robot) || lanes_.size() >= kMostRobots) continue;
     try {
       open_lane(robot);
       SPDLOG_INFO("event=robot_found robot=\"{}\"", robot);

@@ -47,7 +47,8 @@ struct ServiceConfig {
     binder.field("maps_dir", maps_folder, "folder of the maps that atlas/save and atlas/load may name; empty: none")
         .option("--maps-dir");
     binder.field("map_frame", map_frame, "frame of the joint map");
-    binder.field("robots", robots, "names of the robots whose maps are joined; empty: all in the domain").option("--robots");
+    binder.field("robots", robots, "names of the robots whose maps are joined; empty: all in the domain")
+        .option("--robots");
     binder.field("checkpoint_s", checkpoint_s, {1, 86'400}, "between two saves of a map that grows");
     binder.field("request_keyframes", request_keyframes, {1, 1000}, "asked of a robot at a time");
   }

@@ -22,6 +22,8 @@ namespace {
 
 /// A correction by the robot of less than this does not show in the joint map.
 constexpr double kMoved_m = 0.01, kMoved_rad = 0.005;
+/// Keyframes of one robot; no honest map has more.
+constexpr std::size_t kMostAnnounced = 100'000;
 /// What a robot sees as one of its landmarks lies no farther from it than this, unless the map it belongs to is
 /// another.
 constexpr double kSameLandmark_m = 0.3;
@@ -97,6 +99,7 @@ void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
       robot.keyframes.erase(known);
       continue;
     }
+    if (known == robot.keyframes.end() && robot.keyframes.size() >= kMostAnnounced) continue;
     Announced& announced = robot.keyframes[entry.keyframe_id];
     const Eigen::Isometry3d T_before = announced.T_robot_camera;
     announced.T_robot_camera = msg::to_isometry(entry.T_world_camera);
@@ -262,6 +265,11 @@ void Atlas::give_way(KeyframeId newest) {
   const Keyframe& keyframe = *map_.find_keyframe(newest);
   std::vector<KeyframeId>& cell = cells_[cell_of(worlds_.at(keyframe.map), keyframe.T_world_camera)];
   cell.push_back(newest);
+  if (static_cast<int>(map_.keyframes().size()) > config_.most_keyframes) {
+    ++counters_.given_way;
+    drop(by_stamp_.begin()->second);
+    return;
+  }
   if (static_cast<int>(cell.size()) <= config_.cell_keyframes) return;
   const KeyframeId oldest =
       *std::ranges::min_element(cell, {}, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns; });

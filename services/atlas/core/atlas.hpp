@@ -29,6 +29,7 @@ struct AtlasConfig {
   slam::SlamConfig slam;  ///< `loop`: when two places are one
   double cell_m = 0.75;
   int cell_keyframes = 6;
+  int most_keyframes = 20'000;
   int look_every = 1;
   int settled_after = 5;
   int submap_keyframes = 12;
@@ -38,6 +39,7 @@ struct AtlasConfig {
   void bind(auto& binder) {
     binder.field("cell_m", cell_m, {0.1, 10.0}, "keyframes so near that look the same way show one place");
     binder.field("cell_keyframes", cell_keyframes, {1, 100}, "of one place, the newest so many stay");
+    binder.field("most_keyframes", most_keyframes, {100, 1'000'000}, "of the joint map: beyond, the oldest go");
     binder.field("look_every", look_every, {1, 1000}, "keyframes of a robot that has met the joint map, per search");
     binder.field("settled_after", settled_after, {0, 100}, "later keyframes, before one is asked for");
     binder.field("submap_keyframes", submap_keyframes, {1, 50}, "sent to a robot that asks where it is");
