@@ -50,12 +50,24 @@ class AtlasClientTest : public test_support::ServiceFixture<SlamService> {
   }
   /// One more frame of a camera that is where it is in frame `place` of the world.
   TrackingState step(std::uint64_t place, std::int64_t after_ms = 33) {
-    auto frame = world_.view(place);
+    auto frame = seen_->view(place);
     frame->seq = frames_++;
     frame->stamp_ns = now_ns_ += 1'000'000 * after_ms;
     EXPECT_TRUE(features_.write(*frame));
     EXPECT_TRUE(results_.wait_count(frames_)) << "every frame has a result";
     return results_.all().back()->state;
+  }
+  /// The camera is found in a map of the world that it sees, after less than a second at `place` and behind it.
+  void expect_found(std::uint64_t place) {
+    ASSERT_TRUE(rest_until(place, "event=submap_taken keyframes="));
+    EXPECT_EQ(step(place), TrackingState::kRelocalizing);
+    const std::uint64_t give_up = place + 30;
+    while (step(place) != TrackingState::kOk) ASSERT_LT(++place, give_up) << "not found in the map";
+    for (const std::uint64_t end = place + 5; place < end;) {
+      ASSERT_EQ(step(++place), TrackingState::kOk);
+      const Eigen::Isometry3d T_world_camera = msg::to_isometry(results_.all().back()->T_world_camera);
+      EXPECT_LT((FeatureWorld::T_world_camera(place).inverse() * T_world_camera).translation().norm(), 5e-3) << "m";
+    }
   }
   /// Frames a millisecond apart, of a camera at rest, until the log has this.
   bool rest_until(std::uint64_t place, const std::string& event) {
@@ -68,7 +80,7 @@ class AtlasClientTest : public test_support::ServiceFixture<SlamService> {
   }
   bool answer(std::vector<std::uint8_t> file) {
     const msg::Transform T = msg::to_message(Eigen::Isometry3d::Identity());
-    return submaps_.write({queries_.all().front()->stamp_ns, T, std::move(file)});
+    return submaps_.write({queries_.all().back()->stamp_ns, T, std::move(file)});
   }
   /// A map of the first 60 frames.
   static std::vector<std::uint8_t> map_of(const FeatureWorld& world, double fx_px = FeatureWorld::kFx) {
@@ -85,7 +97,8 @@ class AtlasClientTest : public test_support::ServiceFixture<SlamService> {
     return bytes;
   }
 
-  const FeatureWorld world_{{}};
+  const FeatureWorld world_{{}}, elsewhere_{{.seed = 2}};
+  const FeatureWorld* seen_ = &world_;  ///< by the camera
   Inbox<msg::TrackingResult> results_;
   Inbox<msg::KeyframeFeatures> queries_;
   Inbox<std::string> log_;
@@ -102,25 +115,24 @@ TEST_F(AtlasClientTest, a_robot_that_starts_continues_in_the_map_that_it_is_sent
   EXPECT_EQ(query.stamp_ns, now_ns_);
   EXPECT_EQ(query.features.size(), world_.view(30)->count);
   ASSERT_TRUE(answer(map_of(world_)));
-  ASSERT_TRUE(rest_until(30, "event=submap_taken keyframes="));
-  EXPECT_EQ(step(30), TrackingState::kRelocalizing);
+  expect_found(30);
+}
+
+TEST_F(AtlasClientTest, a_robot_that_is_lost_continues_in_the_map_that_it_is_sent) {
+  start_asking(30);
+  for (int i = 0; i < 100; ++i) step(30);
   const std::size_t asked = queries_.all().size();
-  std::uint64_t place = 31;
-  while (step(place) != TrackingState::kOk) ASSERT_LT(++place, 60U) << "not found in the map";
-  for (const std::uint64_t end = place + 5; place < end; ++place) {
-    const std::uint64_t next = place + 1;
-    ASSERT_EQ(step(next), TrackingState::kOk);
-    const Eigen::Isometry3d T_world_camera = msg::to_isometry(results_.all().back()->T_world_camera);
-    EXPECT_LT((FeatureWorld::T_world_camera(next).inverse() * T_world_camera).translation().norm(), 5e-3) << "m";
-  }
-  EXPECT_EQ(queries_.all().size(), asked) << "it knows where it is";
+  seen_ = &elsewhere_;
+  for (int i = 0; i < 100 && queries_.all().size() == asked; ++i) step(30);
+  ASSERT_EQ(results_.all().back()->state, TrackingState::kLost);
+  ASSERT_GT(queries_.all().size(), asked);
+  ASSERT_TRUE(answer(map_of(elsewhere_)));
+  expect_found(30);
 }
 
 TEST_F(AtlasClientTest, a_map_in_which_the_camera_is_not_found_is_given_up) {
   start_asking(30);
-  FeatureWorld::Options elsewhere;
-  elsewhere.seed = 2;
-  ASSERT_TRUE(answer(map_of(FeatureWorld(elsewhere))));
+  ASSERT_TRUE(answer(map_of(elsewhere_)));
   ASSERT_TRUE(rest_until(30, "event=submap_taken"));
   const std::size_t asked = queries_.all().size();
   for (int i = 0; i < 100 && !logged("event=submap_given_up"); ++i) step(30);

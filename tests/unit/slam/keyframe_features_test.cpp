@@ -98,7 +98,8 @@ TEST(KeyframeFeatures, of_a_frame_are_as_measured_and_receivers_take_them) {
   EXPECT_EQ(feature.static_probability, 0.75F);
   EXPECT_EQ(feature.octave, 3);
   EXPECT_EQ(feature.flags, msg::kFeatureInLowMask);
-  EXPECT_EQ(msg::to_string(msg::implausible_field(message)), "") << "also with a readout from the last row to the first";
+  EXPECT_EQ(msg::to_string(msg::implausible_field(message)), "")
+      << "also with a readout from the last row to the first";
 }
 
 }  // namespace
