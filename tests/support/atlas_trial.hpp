@@ -38,9 +38,9 @@ struct TrialResult {
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
                             const atlas::AtlasConfig& config = {});
 
-/// How an atlas bears many robots.
+/// How an atlas does with many robots.
 struct ScaleResult {
-  std::uint64_t keyframes = 0;  ///< told
+  std::uint64_t keyframes = 0;  ///< sent
   double cpu_s = 0, wall_s = 0;
   double p99_ms = 0, longest_ms = 0;  ///< from a keyframe to the joint map with it
   std::size_t kept = 0;               ///< keyframes in the joint map at the end

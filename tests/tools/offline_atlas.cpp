@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
       options.source = robots.front().source;
       const ScaleResult result = run_scale_trial(options, robots_at_once, seconds, config);
       std::cout << fmt::format(
-          "{} robots, {} s: {} keyframes told, {} kept, CPU {:.0f} s, p99 {:.1f} ms, longest {:.0f} ms, peak {:.0f} "
+          "{} robots, {} s: {} keyframes sent, {} kept, CPU {:.0f} s, p99 {:.1f} ms, longest {:.0f} ms, peak {:.0f} "
           "MB{}\n",
           robots_at_once, seconds, result.keyframes, result.kept, result.cpu_s, result.p99_ms, result.longest_ms,
           result.peak_mb, result.all_met ? ", all met" : ", NOT ALL MET");
