@@ -97,7 +97,7 @@ struct BusOptions {
 
 RosGraph ros_graph_of(const BusOptions& options);
 
-/// The bus within one process that tests add: no network, no shared memory, no process else.
+/// The bus within one process that tests add: no network, no shared memory, no other process.
 inline constexpr const char* kInprocess = "inprocess";
 
 class RawBus;
