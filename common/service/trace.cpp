@@ -13,7 +13,7 @@ namespace rtd::service {
 namespace {
 
 constexpr std::int64_t kFlushPeriodNs = 1'000'000'000;  // what a killed process loses at most
-constexpr double kNsPerUs = 1e3, kNsInMs = 1e6;
+constexpr double kNsPerUs = 1e3, kNsOfMs = 1e6;
 
 double us(std::int64_t ns) {
   return static_cast<double>(ns) / kNsPerUs;
@@ -56,7 +56,7 @@ void Trace::stages(std::int64_t begin_ns, std::span<const TraceStage> stages, st
   std::string lines;
   double after_ns = 0;
   for (const TraceStage& stage : stages) {
-    const double duration_ns = static_cast<double>(stage.ms) * kNsInMs;
+    const double duration_ns = static_cast<double>(stage.ms) * kNsOfMs;
     if (duration_ns <= 0) continue;
     lines += span_line(stage.name, begin_ns + static_cast<std::int64_t>(after_ns), duration_ns, frame);
     after_ns += duration_ns;

@@ -49,7 +49,7 @@ constexpr std::array kCalibrationFiles = {"camera_intrinsic*.json",
                                           "../camera-intrinsics.txt",
                                           "../cam_params.json"};
 
-bool of_one_shape(cv::Size a, cv::Size b) {
+bool nearly_same_shape(cv::Size a, cv::Size b) {
   constexpr double kNearly = 0.02;
   return std::abs(static_cast<double>(a.width) * b.height / (static_cast<double>(a.height) * b.width) - 1) < kNearly;
 }
@@ -241,7 +241,7 @@ void FolderSource::calibrate(const FirstImages& first) {
 /// The camera of the images, or of what a frame carries of them.
 void FolderSource::fit(geometry::CameraModel& camera, cv::Size image_px) {
   const cv::Size frame_px = size_in_frame(image_px);
-  if (!of_one_shape(image_px, size_of(camera))) return;
+  if (!nearly_same_shape(image_px, size_of(camera))) return;
   if (frame_px != image_px) large_px_ = image_px;
   if (image_px == size_of(camera) && large_px_.empty()) return;
   camera = scaled(camera, frame_px);
@@ -295,7 +295,7 @@ void FolderSource::align_depth(const FirstImages& first) {
     note(fmt::format("depth has the lens of {}: it is registered to colour", file));
     break;
   }
-  if (!lens && depth_px != color_px && of_one_shape(depth_px, color_px)) {
+  if (!lens && depth_px != color_px && nearly_same_shape(depth_px, color_px)) {
     lens = scaled(info_.camera, depth_px);
     note(fmt::format("depth of {} px is scaled to {}", size_text(depth_px), size_text(color_px)));
   }

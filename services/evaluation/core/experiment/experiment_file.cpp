@@ -98,7 +98,6 @@ Experiment read_experiment(const std::string& file) {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Cells = std::vector<std::string>;
 
 /// How a figure of several runs becomes a cell.
