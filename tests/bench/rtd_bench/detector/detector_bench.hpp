@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnx_file.hpp"
