@@ -17,6 +17,13 @@
 /// A plausible message of each type with at least one element in each sequence, and its fields one by one.
 namespace rtd::bus::walk {
 
+template <class T, class... All>
+constexpr bool contains(TypeList<All...>) {
+  return (std::is_same_v<T, All> || ...);
+}
+template <class T>
+inline constexpr bool kOnBus = contains<T>(MessageTypes());
+
 template <class... A, class... B>
 TypeList<A..., B...> joined(TypeList<A...>, TypeList<B...>);
 
@@ -112,10 +119,10 @@ std::unique_ptr<T> plausible_message() {
 /// Calls visit(leaf, rule, "package/Type.field") with each number, text and sequence; of arrays with the first and the
 /// last element, of the features of a frame with those that count.
 template <msg::Message T, class Visit>
-void for_each_leaf(T& message, const Visit& visit);
+void for_each_leaf(T& message, Visit& visit);
 
 template <class T, class Visit>
-void visit_field(T& field, const msg::FieldRule& rule, const std::string& name, const Visit& visit) {
+void visit_field(T& field, const msg::FieldRule& rule, const std::string& name, Visit& visit) {
   if constexpr (msg::Message<T>) {
     for_each_leaf(field, visit);
   } else if constexpr (kArray<T>) {
@@ -129,7 +136,7 @@ void visit_field(T& field, const msg::FieldRule& rule, const std::string& name, 
 }
 
 template <msg::Message T, class Visit>
-void for_each_leaf(T& message, const Visit& visit) {
+void for_each_leaf(T& message, Visit& visit) {
   std::size_t place = 0;
   msg::for_each_field(message, [&](const char* name, auto& field) {
     visit_field(field, msg::plausible::kRules<T>[place++], std::string(type_name(msg::TypeOf<T>())) + '.' + name,
