@@ -6,50 +6,18 @@
 #include <malloc.h>
 
 #include <limits>
-#include <memory>
 
 #include "services/launcher/process/frame_file.hpp"
 #include "tests/support/frame_list.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/unit/launcher/run_messages.hpp"
 
 namespace rtd::launcher {
 namespace {
 
-using testing::Each;
 using testing::ElementsAre;
-using testing::Field;
 using testing::Pair;
 using testing::UnorderedElementsAre;
-
-constexpr std::int64_t kMs = 1'000'000;
-
-msg::TrackingResult result_of(std::uint64_t seq, msg::TrackingState state = msg::TrackingState::kOk) {
-  msg::TrackingResult result{};
-  result.seq = seq;
-  result.stamp_ns = static_cast<std::int64_t>(seq) * 33 * kMs;
-  result.published_ns = result.stamp_ns;
-  result.finished_ns = result.published_ns + 20 * kMs;
-  result.state = state;
-  result.inliers = static_cast<std::uint32_t>(100 + seq);
-  return result;
-}
-
-std::unique_ptr<msg::FeatureFrame> features_of(std::uint64_t seq, std::uint32_t count = 3) {
-  auto features = std::make_unique<msg::FeatureFrame>();
-  features->seq = seq;
-  features->count = count;
-  features->objects = static_cast<std::uint32_t>(seq) + 1;
-  features->stage_ms[msg::kStageExtract] = 7.0F;
-  return features;
-}
-
-msg::ServiceStatus status_of(const std::string& service, std::int64_t pid, std::vector<msg::Metric> metrics) {
-  msg::ServiceStatus status;
-  status.service = service;
-  status.pid = pid;
-  status.metrics = std::move(metrics);
-  return status;
-}
 
 std::vector<std::uint64_t> seqs(const run_record::RunRecord& record) {
   std::vector<std::uint64_t> result;
@@ -57,15 +25,24 @@ std::vector<std::uint64_t> seqs(const run_record::RunRecord& record) {
   return result;
 }
 
-TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
+class record_builder : public testing::Test {
+ protected:
+  run_record::RunRecord filled() {
+    run_record::RunRecord record;
+    builder.fill(record);
+    return record;
+  }
+
   FrameList store;
-  RecordBuilder builder(store);
+  RecordBuilder builder{store};
+};
+
+TEST_F(record_builder, joins_both_streams_by_seq_in_any_order) {
   builder.add(result_of(1));
   builder.add(*features_of(1));
   builder.add(*features_of(0));
   builder.add(result_of(0));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   ASSERT_THAT(seqs(record), ElementsAre(0, 1));
   EXPECT_EQ(record.frames[1].tracking.inliers, 101U);
   EXPECT_FLOAT_EQ(record.frames[0].filter_stage_ms[msg::kStageExtract], 7.0F);
@@ -73,52 +50,40 @@ TEST(record_builder, joins_both_streams_by_seq_in_any_order) {
   EXPECT_EQ(record.frames_dropped, 0U);
 }
 
-TEST(record_builder, counts_frames_without_result_as_dropped) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, counts_frames_without_result_as_dropped) {
   builder.add(result_of(0));
   builder.add(*features_of(1));
   builder.add(result_of(4));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_THAT(seqs(record), ElementsAre(0, 4));
   EXPECT_EQ(record.frames_in, 5U);
   EXPECT_EQ(record.frames_dropped, 3U);
 }
 
-TEST(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, the_cameras_own_count_wins_when_it_saw_more) {
   builder.add(result_of(0));
   builder.add(status_of("camera", 7, {{"frames_in", 10}}));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_EQ(record.frames_in, 10U);
   EXPECT_EQ(record.frames_dropped, 9U);
 }
 
-TEST(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, the_first_answer_counts_when_a_frame_was_sent_again) {
   builder.add(result_of(0));
   msg::TrackingResult again = result_of(0);
   again.finished_ns += 2000 * kMs;
   builder.add(again);
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   ASSERT_EQ(record.frames.size(), 1U);
   EXPECT_EQ(record.frames[0].tracking.finished_ns, 20 * kMs);
 }
 
-TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   builder.add(status_of("filter", 7, {{"queue_dropped", 4}, {"frames_processed", 90}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 1}}));
   builder.add(status_of("filter", 8, {{"queue_dropped", 2}}));
   builder.add(status_of("camera", 9, {{"frames_late", 3}, {"frames_skipped", 0}}));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_THAT(record.drops,
               UnorderedElementsAre(Pair("filter.queue_dropped", 6), Pair("camera.late", 3), Pair("camera.skipped", 0)));
   EXPECT_EQ(builder.live().dropped, 9U);
@@ -126,26 +91,21 @@ TEST(record_builder, drops_are_named_by_place_and_survive_a_restart) {
   EXPECT_EQ(builder.live().dropped, 9U) << "the detector only ever looks at the newest frame";
 }
 
-TEST(record_builder, a_restarted_camera_counts_its_frames_on) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, a_restarted_camera_counts_its_frames_on) {
   builder.add(status_of("camera", 7, {{"frames_in", 3}, {"frames_late", 1}}));
   for (const std::uint64_t seq : {0, 1, 2}) builder.add(result_of(seq));
   builder.add(status_of("camera", 8, {{"frames_late", 1}}));
   EXPECT_EQ(builder.frames_in(), 3U);
   for (const std::uint64_t seq : {2, 5}) builder.add(result_of(seq));
   builder.add(status_of("camera", 8, {{"frames_in", 7}, {"frames_late", 2}}));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_THAT(seqs(record), ElementsAre(0, 1, 2, 5));
   EXPECT_EQ(record.frames_in, 7U);
   EXPECT_EQ(record.frames_dropped, 3U);
   EXPECT_EQ(record.drops.at("camera.late"), 3);
 }
 
-TEST(record_builder, knows_where_a_camera_stopped) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, knows_where_a_camera_stopped) {
   EXPECT_FALSE(builder.last_seen() || builder.last_answered());
   builder.add(result_of(3));
   builder.add(*features_of(4));
@@ -160,9 +120,7 @@ TEST(record_builder, knows_where_a_camera_stopped) {
   EXPECT_EQ(builder.last_seen()->stamp_ns, 55);
 }
 
-TEST(record_builder, knows_whether_anything_was_tracked) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, knows_whether_anything_was_tracked) {
   EXPECT_FALSE(builder.live().tracking);
   builder.add(result_of(0, msg::TrackingState::kLost));
   EXPECT_FALSE(builder.tracked_any());
@@ -171,9 +129,7 @@ TEST(record_builder, knows_whether_anything_was_tracked) {
   EXPECT_TRUE(builder.tracked_any());
 }
 
-TEST(record_builder, live_status_follows_the_newest_frame) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, live_status_follows_the_newest_frame) {
   for (std::uint64_t seq = 0; seq < 60; ++seq) builder.add(result_of(seq));
   const LiveStatus status = builder.live();
   EXPECT_EQ(status.frames, 60U);
@@ -182,9 +138,7 @@ TEST(record_builder, live_status_follows_the_newest_frame) {
   EXPECT_DOUBLE_EQ(status.latency_ms, 20.0);
 }
 
-TEST(record_builder, reports_a_dead_peer_once_until_it_is_received_again) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, reports_a_dead_peer_once_until_it_is_received_again) {
   msg::ServiceStatus filter{.service = "filter"}, slam{.service = "slam"};
   filter.metrics = slam.metrics = {{"peer.detector.dead", 1}};
   builder.add(filter);
@@ -197,27 +151,16 @@ TEST(record_builder, reports_a_dead_peer_once_until_it_is_received_again) {
   EXPECT_EQ(builder.take_notice(), "detector is dead: no heartbeat") << "again";
 }
 
-TEST(record_builder, reports_refused_endpoints_by_service_and_topic) {
-  FrameList store;
-  RecordBuilder builder(store);
-  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 1}}});
-  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.incompatible_qos", 2}}});
-  EXPECT_EQ(builder.take_notice(), "slam: rtd/features: incompatible_qos");
-  EXPECT_EQ(builder.take_notice(), std::nullopt);
+TEST_F(record_builder, reports_troubles_once_by_service_and_topic) {
+  for (const std::string trouble : {"incompatible_qos", "implausible"}) {
+    for (const double times : {1.0, 900.0})
+      builder.add(status_of("slam", 7, {{"topic.rtd/features." + trouble, times}}));
+    EXPECT_EQ(builder.take_notice(), "slam: rtd/features: " + trouble);
+    EXPECT_EQ(builder.take_notice(), std::nullopt);
+  }
 }
 
-TEST(record_builder, reports_implausible_messages_once_by_service_and_topic) {
-  FrameList store;
-  RecordBuilder builder(store);
-  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 1}}});
-  builder.add(msg::ServiceStatus{.service = "slam", .metrics = {{"topic.rtd/features.implausible", 900}}});
-  EXPECT_EQ(builder.take_notice(), "slam: rtd/features: implausible");
-  EXPECT_EQ(builder.take_notice(), std::nullopt);
-}
-
-TEST(record_builder, reports_a_degraded_service_once) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, reports_a_degraded_service_once) {
   msg::ServiceStatus status = status_of("filter", 7, {});
   status.state = msg::ServiceState::kDegraded;
   status.message = "detector gone, geometry only";
@@ -227,9 +170,7 @@ TEST(record_builder, reports_a_degraded_service_once) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, groups_notices_that_differ_in_their_numbers) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, groups_notices_that_differ_in_their_numbers) {
   for (std::uint64_t seq = 0; seq < 67; ++seq) {
     builder.add(result_of(seq));
     msg::ServiceStatus status = status_of("slam", 7, {});
@@ -243,9 +184,7 @@ TEST(record_builder, groups_notices_that_differ_in_their_numbers) {
               testing::ElementsAre("slam: doubtful: only 42 % agree (67 times, from frame 1 to 67)"));
 }
 
-TEST(record_builder, names_the_services_that_report_and_have_not_finished) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, names_the_services_that_report_and_have_not_finished) {
   EXPECT_EQ(builder.active_services(), "");
   builder.add(status_of("slam", 8, {}));
   builder.add(status_of("filter", 7, {}));
@@ -278,90 +217,17 @@ TEST(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
   EXPECT_EQ(builder.active_services(at_first), "replay (pid 7)");
 }
 
-TEST(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, knows_the_clocks_of_other_hosts_from_slam) {
   builder.add(status_of("slam", 8, {{"clock.detector.offset_ms", 250.5}, {"clock.detector.round_trip_ms", 0.75}}));
   builder.add(status_of("detector", 9, {{"clock.slam.offset_ms", -250.5}, {"clock.slam.round_trip_ms", 0.75}}));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   ASSERT_EQ(record.clocks.size(), 1u);
   EXPECT_EQ(record.clocks[0].service, "detector");
   EXPECT_EQ(record.clocks[0].offset_ms, 250.5);
   EXPECT_EQ(record.clocks[0].round_trip_ms, 0.75);
 }
 
-std::vector<run_record::SampleFrame> run_samples(SampleKeeper& keeper, std::uint64_t frames) {
-  for (std::uint64_t seq = 0; seq < frames; ++seq) {
-    if (keeper.wants(seq)) keeper.add_image(seq, {1, 2, 3});
-    keeper.add_features(seq, *features_of(seq));
-  }
-  return keeper.samples();
-}
-
-TEST(sample_keeper, spreads_the_wanted_number_over_a_known_length) {
-  SampleKeeper keeper(12, 210);
-  const auto samples = run_samples(keeper, 210);
-  ASSERT_EQ(samples.size(), 12U);
-  EXPECT_EQ(samples[0].seq, 0U);
-  EXPECT_EQ(samples[11].seq, 198U);
-  EXPECT_EQ(samples[3].features.size(), 3U);
-}
-
-TEST(sample_keeper, keeps_where_the_static_points_are) {
-  SampleKeeper keeper(1, 1);
-  auto features = *features_of(0);
-  features.intrinsics = {500, 400, 320, 240};
-  for (std::size_t i = 0; i < 3; ++i) features.features[i] = {.u_px = 420, .v_px = 140, .u_raw_px = 9, .depth_m = 2};
-  features.features[1].flags = msg::kFeatureRemoved;
-  features.features[2].depth_m = 0;
-  keeper.add_image(0, {1});
-  keeper.add_features(0, features);
-  const std::vector<run_record::SeenPoint> points = keeper.samples().at(0).points;
-  ASSERT_EQ(points.size(), 1U);
-  EXPECT_EQ(points[0].u_raw_px, 9);
-  EXPECT_THAT(points[0].p_camera_m, ElementsAre(0.4F, -0.5F, 2));
-}
-
-TEST(sample_keeper, stays_even_and_bounded_over_an_unknown_length) {
-  SampleKeeper keeper(12);
-  const auto samples = run_samples(keeper, 5000);
-  ASSERT_GE(samples.size(), 10U);
-  ASSERT_LE(samples.size(), 12U);
-  EXPECT_GT(samples.back().seq, 4000U);
-  for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LT(samples[i].seq - samples[i - 1].seq, 1100U);
-}
-
-TEST(sample_keeper, finds_the_frame_of_masks_by_its_stamp) {
-  SampleKeeper keeper(12, 24);
-  keeper.expect_masks(4, 400);
-  keeper.add_masks(500, {1, 1, {2}});  // of a frame that is not kept
-  keeper.add_masks(400, {1, 1, {1}});
-  keeper.add_image(4, {1});
-  keeper.add_features(4, *features_of(4));
-  ASSERT_EQ(keeper.samples().size(), 1U);
-  EXPECT_THAT(keeper.samples()[0].masks.labels, ElementsAre(1));
-}
-
-TEST(sample_keeper, needs_picture_and_features) {
-  SampleKeeper keeper(12, 24);
-  keeper.add_image(0, {1});
-  keeper.add_features(2, *features_of(2));
-  keeper.add_image(4, {1});
-  keeper.add_features(4, *features_of(4));
-  EXPECT_THAT(keeper.samples(), ElementsAre(Field(&run_record::SampleFrame::seq, 4)));
-}
-
-TEST(sample_keeper, believes_no_count_beyond_the_message) {
-  SampleKeeper keeper;
-  keeper.add_image(0, {1});
-  keeper.add_features(0, *features_of(0, 4'000'000'000U));
-  EXPECT_EQ(keeper.samples().at(0).features.size(), msg::kMaxFeatures);
-}
-
-TEST(record_builder, keeps_the_frames_of_a_long_run_in_the_store_in_their_order) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, keeps_the_frames_of_a_long_run_in_the_store_in_their_order) {
   constexpr std::uint64_t kFrames = 3 * RecordBuilder::kJoined;
   for (std::uint64_t seq = 0; seq < kFrames; seq += 2) {
     builder.add(result_of(seq + 1));  // out of order
@@ -369,27 +235,22 @@ TEST(record_builder, keeps_the_frames_of_a_long_run_in_the_store_in_their_order)
   }
   EXPECT_EQ(store.frames.size(), kFrames - RecordBuilder::kJoined);
   builder.add(result_of(3, msg::TrackingState::kLost));  // an answer to a frame that was sent again
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   ASSERT_EQ(record.frames.size(), kFrames);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) ASSERT_EQ(record.frames[seq].tracking.seq, seq);
   EXPECT_EQ(record.frames[3].tracking.state, msg::TrackingState::kOk);
   EXPECT_EQ(record.frames_dropped, 0U);
 }
 
-TEST(record_builder, says_once_that_frames_could_not_be_kept) {
-  FrameList store;
+TEST_F(record_builder, says_once_that_frames_could_not_be_kept) {
   store.room = 10;
-  RecordBuilder builder(store);
   for (std::uint64_t seq = 0; seq < 2 * RecordBuilder::kJoined; ++seq) builder.add(result_of(seq));
   EXPECT_EQ(builder.frames_not_kept(), RecordBuilder::kJoined - 10);
   EXPECT_THAT(builder.take_notice(), testing::Optional(testing::HasSubstr("the disk is full")));
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, ignores_a_forged_number_and_reports_it) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, ignores_a_forged_number_and_reports_it) {
   builder.add(result_of(0));
   builder.add(result_of(UINT64_MAX - 1));
   builder.add(*features_of(RecordBuilder::kFarthestAhead + 1));
@@ -399,9 +260,7 @@ TEST(record_builder, ignores_a_forged_number_and_reports_it) {
   EXPECT_EQ(builder.take_notice(), std::nullopt);
 }
 
-TEST(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
   msg::ServiceStatus camera = status_of("camera", 7, {{"frames_in", 3}});
   builder.add(camera);
   builder.add(result_of(0));
@@ -410,20 +269,17 @@ TEST(record_builder, frames_behind_the_end_of_the_source_do_not_count) {
   builder.add(camera);
   builder.add(result_of(4));
   builder.add(result_of(2));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_THAT(seqs(record), ElementsAre(0, 2));
   EXPECT_EQ(record.frames_in, 3U);
 }
 
-TEST(record_builder, a_forged_first_number_counts_no_frames) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, a_forged_first_number_counts_no_frames) {
   builder.add(result_of(UINT64_MAX));
   EXPECT_EQ(builder.frames_in(), 0U);
 }
 
-TEST(record_builder, counters_that_claim_too_much_saturate) {
+TEST(record_builders, counters_that_claim_too_much_saturate) {
   for (const double claimed : {1e300, -5.0, std::numeric_limits<double>::quiet_NaN()}) {
     FrameList store;
     RecordBuilder builder(store);
@@ -432,18 +288,13 @@ TEST(record_builder, counters_that_claim_too_much_saturate) {
   }
 }
 
-TEST(record_builder, losses_of_topics_without_frames_are_no_lost_frames) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, losses_of_topics_without_frames_are_no_lost_frames) {
   builder.add(status_of("dense", 1, {{"topic.rtd/status.lost", 779}, {"topic.rtd/frame.lost", 2}}));
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_THAT(record.drops, ElementsAre(testing::Pair("dense.topic.rtd/frame.lost", 2)));
 }
 
-TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_number) {
-  FrameList store;
-  RecordBuilder builder(store);
+TEST_F(record_builder, made_up_services_counters_and_troubles_have_a_largest_number) {
   builder.add(status_of("slam", 1, {{"frames_lost", 1}}));
   for (int i = 0; i < 20'000; ++i) {
     const std::string name = "forged" + std::to_string(i);
@@ -456,8 +307,7 @@ TEST(record_builder, made_up_services_counters_and_troubles_have_a_largest_numbe
   std::size_t notices = 0;
   while (builder.take_notice()) ++notices;
   EXPECT_EQ(notices, RecordBuilder::kMaxNotices);
-  run_record::RunRecord record;
-  builder.fill(record);
+  const run_record::RunRecord record = filled();
   EXPECT_LE(record.drops.size(), RecordBuilder::kMaxServices + RecordBuilder::kMaxCounters);
   EXPECT_EQ(record.drops.at("slam.lost"), 1.0) << "the real counter stays";
 }
@@ -468,7 +318,7 @@ std::size_t allocated() {
   return info.uordblks + info.hblkhd;
 }
 
-TEST(record_builder, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
+TEST(record_builders, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
   if (test_support::kSanitized) GTEST_SKIP() << "sanitizers count their own memory";
   const std::string folder = testing::TempDir();
   FrameFile store(folder);
