@@ -19,6 +19,7 @@
 #include "common/msg/ros_graph.hpp"
 #include "common/ros2/names.hpp"
 #include "common/ros_codec/wire.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/rmw_user_data.hpp"
 
 /// What a program of ROS 2 does beside its own topics, as rcl and the RMWs do it: it collects the nodes that others
@@ -127,16 +128,6 @@ class RosDouble {
     std::unique_lock lock(mutex);
     if (!changed.wait_for(lock, 10s, [&] { return reply.has_value(); })) return std::nullopt;
     return ros::decode<Reply>(ros::Wire::kCdr, {reinterpret_cast<const std::uint8_t*>(reply->data()), reply->size()});
-  }
-
-  /// Waits for a condition, at most 20 s.
-  template <class Condition>
-  static bool eventually(const Condition& condition) {
-    for (int i = 0; i < 1000; ++i) {
-      if (condition()) return true;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
-    return condition();
   }
 
  private:

@@ -19,10 +19,12 @@
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace rtd::bus {
 namespace {
 
+using test_support::eventually;
 using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -88,12 +90,6 @@ class DiscoveryServer : public ::testing::Test {
     options.on_problem = [this](const std::string& problem) { problems_.push(std::make_shared<std::string>(problem)); };
     return options;
   }
-  static bool wait_until(const std::function<bool()>& condition, std::chrono::seconds most = 30s) {
-    const auto give_up = std::chrono::steady_clock::now() + most;
-    while (!condition() && std::chrono::steady_clock::now() < give_up) std::this_thread::sleep_for(10ms);
-    return condition();
-  }
-
   const int port_ = free_port();
   Collector<std::string> problems_;
 };
@@ -114,7 +110,7 @@ TEST_F(DiscoveryServer, matches_two_participants_that_do_not_find_each_other_wit
   EXPECT_EQ(reader.matched(), 0);
 
   const Server server("0", port_);
-  ASSERT_TRUE(wait_until([&] { return writer.matched() == 1 && reader.matched() == 1; }))
+  ASSERT_TRUE(eventually([&] { return writer.matched() == 1 && reader.matched() == 1; }))
       << (server.running() ? "the server runs" : "the server has ended");
   msg::PoseStamped pose;
   pose.header.frame_id = "map";
@@ -123,7 +119,7 @@ TEST_F(DiscoveryServer, matches_two_participants_that_do_not_find_each_other_wit
 
   // Tools see what they have no reader for.
   const auto tool = connect_raw(options());
-  EXPECT_TRUE(wait_until([&] {
+  EXPECT_TRUE(eventually([&] {
     const auto writers = tool->writers();
     return std::any_of(writers.begin(), writers.end(),
                        [](const TopicWriter& known) { return known.topic.name == topics::kPose.name; });
@@ -135,7 +131,7 @@ TEST_F(DiscoveryServer, that_answers_in_time_is_no_problem) {
   const auto here = connect(options()), there = connect(options());
   const auto reader = there->reader(topics::kPose, [](const auto&) {});
   auto writer = here->writer(topics::kPose);
-  ASSERT_TRUE(wait_until([&] { return writer.matched() == 1 && reader.matched() == 1; }));
+  ASSERT_TRUE(eventually([&] { return writer.matched() == 1 && reader.matched() == 1; }));
   std::this_thread::sleep_for(kServerPatience + 500ms);
   EXPECT_EQ(problems_.size(), 0U) << *problems_.next(30s);
 }

@@ -26,10 +26,12 @@
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/patterns.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace rtd::bus {
 namespace {
 
+using test_support::eventually;
 using namespace std::chrono_literals;
 
 /// The files of shared memory that only this process maps, with their locks.
@@ -48,15 +50,6 @@ std::set<std::string> shm_files_of(pid_t pid, const std::string& except) {
 std::string maps_of(pid_t pid) {
   std::ifstream maps("/proc/" + std::to_string(pid) + "/maps");
   return {std::istreambuf_iterator<char>(maps), {}};
-}
-
-template <class Condition>
-bool eventually(Condition condition) {
-  for (int i = 0; i < 10'000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(1ms);
-  }
-  return false;
 }
 
 bool exists(const std::string& path) {

@@ -17,11 +17,13 @@
 #include "common/bus/raw_bus.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::bus {
 namespace {
 
+using test_support::eventually;
 using namespace std::chrono_literals;
 using Samples = Collector<RawSample>;
 
@@ -65,11 +67,6 @@ class RawTopics : public ::testing::TestWithParam<std::string> {
     ASSERT_GT(b.matched(), 0);
   }
 };
-
-bool eventually(const std::function<bool()>& holds) {
-  for (int i = 0; i < 5000 && !holds(); ++i) std::this_thread::sleep_for(1ms);
-  return holds();
-}
 
 TEST_P(RawTopics, readers_are_known_by_the_name_of_their_connection_until_they_go) {
   const auto from = connect_one(), to = connect_one();

@@ -14,6 +14,7 @@
 #include "common/ros2/type_description.hpp"
 #include "tests/component/bus/collector.hpp"
 #include "tests/component/bus/peer_process.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/ros_double.hpp"
 
 namespace rtd::bus {
@@ -132,15 +133,17 @@ TEST_P(Ros2Wire, a_connection_is_a_node_that_follows_its_endpoints) {
     const auto reads = [&] { return ros.read_by("/anna/rtd_slam"); };
     const auto writes = [&] { return ros.written_by("/anna/rtd_slam"); };
     const std::set<std::string> pose_only{"rt/anna/slam/pose"}, detections_only{"rt/anna/detector/detections"};
-    EXPECT_TRUE(RosDouble::eventually([&] { return writes() == pose_only && reads() == detections_only; }));
-    EXPECT_TRUE(RosDouble::eventually([&] { return ros.nodes().contains("/anna/rtd_slam_2"); })) << "names are unique";
+    EXPECT_TRUE(test_support::eventually([&] { return writes() == pose_only && reads() == detections_only; }));
+    EXPECT_TRUE(test_support::eventually([&] { return ros.nodes().contains("/anna/rtd_slam_2"); }))
+        << "names are unique";
     detections = {};
-    EXPECT_TRUE(RosDouble::eventually([&] { return reads().empty(); }));
+    EXPECT_TRUE(test_support::eventually([&] { return reads().empty(); }));
     EXPECT_EQ(writes(), pose_only);
     // With Cyclone DDS a service is one of a second participant, on Fast DDS.
     const CommandServer server(*bus, "slam/reset", CommandKind::kTrigger, [](const auto&) { return CommandAnswer{}; });
-    EXPECT_TRUE(RosDouble::eventually([&] { return reads() == std::set<std::string>{"rq/anna/slam/resetRequest"}; }));
-    EXPECT_TRUE(RosDouble::eventually([&] { return writes().contains("rr/anna/slam/resetReply"); }));
+    EXPECT_TRUE(
+        test_support::eventually([&] { return reads() == std::set<std::string>{"rq/anna/slam/resetRequest"}; }));
+    EXPECT_TRUE(test_support::eventually([&] { return writes().contains("rr/anna/slam/resetReply"); }));
     EXPECT_FALSE(ros.nodes().contains("/anna/rtd_slam_3"));
     EXPECT_EQ(ros.warnings(), std::vector<std::string>());
   }
@@ -156,7 +159,7 @@ TEST_P(Ros2Wire, no_program_of_ros2_warns_of_an_endpoint) {
   const auto unknown = raw->writer({"rt/unknown", "unknown_msgs::msg::dds_::Thing_"}, {});
   const auto client = raw->create_calls(call_topics("slam/save_map", CommandKind::kText), CallRole::kClient,
                                         [](const CallId&, std::span<const std::byte>) {});
-  EXPECT_TRUE(rtd::testing::RosDouble::eventually([&] { return ros.endpoints() >= 10; })) << ros.endpoints();
+  EXPECT_TRUE(test_support::eventually([&] { return ros.endpoints() >= 10; })) << ros.endpoints();
   EXPECT_EQ(ros.warnings(), std::vector<std::string>());
 }
 

@@ -22,9 +22,9 @@ namespace rtd::camera::test {
 class CameraOnBus : public ::testing::TestWithParam<std::string> {
  protected:
   explicit CameraOnBus(const std::string& source) {
-    static std::uint32_t domain = test_domain();
+    static std::uint32_t tests = 0;
     options_.vendor = GetParam();
-    options_.domain = domain++;
+    options_.domain = test_domain() + tests++ % 2;  // not that of the test before
     bus_ = bus::connect(options_);
     frames_reader_ = bus_->reader<msg::RgbdFrame>(bus::topics::kFrame, [this](auto frame) { frames_.take(frame); });
     statuses_reader_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](auto status) {

@@ -13,30 +13,27 @@
 #include <functional>
 #include <future>
 #include <mutex>
-#include <opencv2/imgcodecs.hpp>
-#include <thread>
 
-#include "common/bus/bus_factory.hpp"
 #include "common/geometry/pose_list.hpp"
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/peer_clocks.hpp"
+#include "tests/component/camera/in_process.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/inbox.hpp"
-#include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::camera {
 namespace {
 
+using test::kPatience;
+using test::kTinyScene;
+using test_support::eventually;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
-
-constexpr std::chrono::seconds kPatience{20};
-constexpr std::uint32_t kFirstDomain = 170;  // in-process domains of this binary, one per test
-constexpr const char* kTinyScene = "synthetic:static?width=64&height=48&frames=";
 
 /// Stands for filter and slam: notes every frame, answers those that `answers` accepts.
 class FakeTracker {
@@ -95,22 +92,9 @@ class FakeTracker {
   bus::Reader<msg::RgbdFrame> frames_;
 };
 
-/// Messages reach a reader on a thread of the bus.
-void wait_until(const std::function<bool()>& done) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!done() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-}
-
 class CameraServiceTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    static std::uint32_t domain = kFirstDomain;
-    bus::BusOptions options;
-    options.vendor = bus::inprocess::vendor();
-    options.domain = domain++;
-    bus_ = bus::connect(options);
     statuses_ = bus_->reader<msg::ServiceStatus>(bus::topics::kStatus, [this](const auto& status) {
       const std::lock_guard lock(mutex_);
       if (status->service == "camera") last_status_ = *status;
@@ -135,7 +119,7 @@ class CameraServiceTest : public ::testing::Test {
   }
   double metric(const std::string& name) const { return service::find_metric(last_status(), name).value_or(-1); }
 
-  std::shared_ptr<bus::Bus> bus_;
+  const std::shared_ptr<bus::Bus> bus_ = test::in_process_bus();
   service::StopToken stop_;
   ServiceConfig config_;
   std::filesystem::path folder_;
@@ -299,92 +283,6 @@ TEST_F(CameraServiceTest, frame_carries_the_image_and_its_calibration) {
   EXPECT_EQ(frame->depth[64 * 48], 0) << "beyond the image";
 }
 
-TEST_F(CameraServiceTest, encodes_jpeg_while_the_topic_has_readers) {
-  std::promise<msg::CompressedImage> jpeg;
-  std::promise<msg::CameraInfo> info;
-  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg,
-                                                        [&](const auto& message) { jpeg.set_value(*message); });
-  const auto infos =
-      bus_->reader<msg::CameraInfo>(bus::topics::kCameraInfo, [&](const auto& message) { info.set_value(*message); });
-  FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
-  const auto frame = make_source(std::string(kTinyScene) + "1")->next();
-  publisher.open(frame->image.color_bgr.size());
-  EXPECT_TRUE(publisher.publish(frame->image));
-  auto received = jpeg.get_future();
-  ASSERT_EQ(received.wait_for(kPatience), std::future_status::ready);
-  EXPECT_EQ(publisher.jpegs().encoded(), 1U);
-  const msg::CompressedImage image = received.get();
-  EXPECT_EQ(msg::to_ns(image.header.stamp), frame->image.stamp_ns);
-  EXPECT_THAT(image.format, HasSubstr("jpeg"));
-  EXPECT_EQ(cv::imdecode(image.data, cv::IMREAD_COLOR).size(), cv::Size(64, 48));
-  auto received_info = info.get_future();
-  ASSERT_EQ(received_info.wait_for(kPatience), std::future_status::ready);
-  EXPECT_EQ(received_info.get().width, 64U);
-}
-
-TEST_F(CameraServiceTest, publishes_ten_small_pictures_of_the_depth_a_second_while_they_have_readers) {
-  std::vector<msg::CompressedImage> pictures;
-  std::mutex mutex;
-  const auto reader = bus_->reader<msg::CompressedImage>(bus::topics::kDepthJpeg, [&](const auto& message) {
-    const std::lock_guard lock(mutex);
-    pictures.push_back(*message);
-  });
-  vision::RgbdImage image = make_source(std::string(kTinyScene) + "1")->next()->image;
-  image.color_bgr = cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(9));
-  image.depth = cv::Mat(480, 640, CV_16UC1, cv::Scalar(2.0 / image.depth_scale_m));
-  {
-    FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
-    for (int i = 0; i < 30; ++i, image.stamp_ns += 33'333'333) publisher.publish(image);
-  }
-  const auto count = [&] {
-    const std::lock_guard lock(mutex);
-    return pictures.size();
-  };
-  wait_until([&] { return count() == 10; });
-  ASSERT_EQ(count(), 10U);
-  const cv::Mat picture = cv::imdecode(pictures.back().data, cv::IMREAD_COLOR);
-  EXPECT_EQ(picture.size(), cv::Size(320, 240));
-  EXPECT_LT(pictures.back().data.size(), 30'000U);
-}
-
-TEST_F(CameraServiceTest, does_not_encode_jpeg_without_readers) {
-  FramePublisher publisher(*bus_, 90, concurrency::Overflow::kBlock, [] {});
-  const auto frame = make_source(std::string(kTinyScene) + "1")->next();
-  publisher.open(frame->image.color_bgr.size());
-  EXPECT_TRUE(publisher.publish(frame->image));
-  EXPECT_EQ(publisher.jpegs().encoded(), 0U);
-}
-
-TEST_F(CameraServiceTest, encodes_every_jpeg_when_nothing_may_be_dropped) {
-  std::atomic<int> received{0};
-  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
-  const int kImages = bus::qos_settings(bus::topics::kColorJpeg.profile).depth;  // the reader holds them all
-  {
-    JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kBlock);
-    for (int i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar(i, i, i)), i);
-  }
-  wait_until([&] { return received == kImages; });
-  EXPECT_EQ(received, kImages) << "what waits at the end is published too";
-}
-
-TEST_F(CameraServiceTest, leaves_out_jpegs_beyond_a_limit_of_the_rate) {
-  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [](const auto&) {});
-  JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kBlock);
-  const auto encoded_in_a_second = [&](double max_hz, std::int64_t begin_s) {
-    publisher.limit_rate(max_hz);
-    const std::uint64_t before = publisher.encoded();
-    for (int i = 0; i < 30; ++i)
-      publisher.offer(cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(9)), begin_s * 1'000'000'000 + i * 33'333'333L);
-    wait_until([&] { return publisher.waiting() == 0; });
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    return publisher.encoded() - before;
-  };
-  EXPECT_EQ(encoded_in_a_second(0, 10), 30U);
-  EXPECT_EQ(encoded_in_a_second(10, 11), 10U);
-  EXPECT_EQ(encoded_in_a_second(3, 12), 3U);
-  EXPECT_EQ(encoded_in_a_second(3, 2), 3U) << "a source that begins again";
-}
-
 TEST_F(CameraServiceTest, a_busy_computer_gets_fewer_jpegs_at_pace_realtime) {
   std::atomic<int> received{0};
   const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
@@ -404,21 +302,6 @@ TEST_F(CameraServiceTest, a_busy_computer_gets_fewer_jpegs_at_pace_realtime) {
   EXPECT_LE(received, 10) << "3 Hz, and what came before the first heartbeat";
 }
 
-TEST_F(CameraServiceTest, counts_jpegs_replaced_by_newer_ones) {
-  std::atomic<std::uint64_t> received{0};
-  const auto jpegs = bus_->reader<msg::CompressedImage>(bus::topics::kColorJpeg, [&](const auto&) { ++received; });
-  constexpr std::uint64_t kImages = 50;
-  std::uint64_t dropped = 0;
-  {
-    JpegPublisher publisher(*bus_, 90, concurrency::Overflow::kDropOldest);
-    for (std::uint64_t i = 0; i < kImages; ++i) publisher.offer(cv::Mat(480, 640, CV_8UC3, cv::Scalar::all(9)), 1);
-    dropped = publisher.dropped();
-  }
-  EXPECT_GT(dropped, 0U);
-  wait_until([&] { return received == kImages - dropped; });
-  EXPECT_EQ(received, kImages - dropped);
-}
-
 TEST_F(CameraServiceTest, waits_for_the_configured_services) {
   service::StopToken others;
   service::Heartbeat slam(*bus_, "slam", others);
@@ -426,7 +309,7 @@ TEST_F(CameraServiceTest, waits_for_the_configured_services) {
   config_.source = std::string(kTinyScene) + "3";
   FakeTracker tracker(*bus_);
   auto running = start(service::Pace::kLockstep);
-  wait_until([this] { return last_status().message.find("slam") != std::string::npos; });
+  eventually([this] { return last_status().message.find("slam") != std::string::npos; });
   EXPECT_THAT(last_status().message, HasSubstr("slam"));
   EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
   EXPECT_THAT(tracker.seqs(), SizeIs(0));
@@ -443,7 +326,7 @@ TEST_F(CameraServiceTest, waits_for_the_launcher_to_subscribe_to_frames) {
   config_.source = std::string(kTinyScene) + "3";
   FakeTracker tracker(*bus_);
   auto running = start(service::Pace::kLockstep);
-  wait_until([this] { return last_status().message.find("waits for 1 of 2") != std::string::npos; });
+  eventually([this] { return last_status().message.find("waits for 1 of 2") != std::string::npos; });
   EXPECT_THAT(last_status().message, HasSubstr("waits for 1 of 2 frame readers"));
   EXPECT_EQ(running.wait_for(std::chrono::milliseconds(300)), std::future_status::timeout);
   const bus::FrameReader launcher(*bus_, [](const auto&) {});

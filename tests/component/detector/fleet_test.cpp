@@ -17,6 +17,7 @@
 
 #include "common/service/peer_clocks.hpp"
 #include "services/detector/fleet_service.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/fleet/robot_double.hpp"
 #include "tests/support/sanitizers.hpp"
 #include "tests/support/test_domain.hpp"
@@ -25,6 +26,7 @@
 namespace rtd::detector {
 namespace {
 
+using test_support::eventually;
 using namespace std::chrono_literals;
 using test_support::quantile;
 using test_support::RobotDouble;
@@ -129,14 +131,6 @@ void wait_served(const Robots& all) {
 
 double metric(const std::optional<msg::ServiceStatus>& status, const std::string& name) {
   return status ? service::find_metric(*status, name).value_or(-1) : -1;
-}
-
-template <class Condition>
-bool eventually(Condition condition, std::chrono::milliseconds patience = 20s) {
-  for (const auto give_up = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < give_up;
-       std::this_thread::sleep_for(5ms))
-    if (condition()) return true;
-  return false;
 }
 
 TEST(Fleet, serves_eight_robots_at_their_rate_and_mixes_up_none) {

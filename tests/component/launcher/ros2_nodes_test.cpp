@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/ros_double.hpp"
 #include "tests/support/test_domain.hpp"
 
@@ -39,7 +40,7 @@ class Ros2Nodes : public ::testing::TestWithParam<std::string> {
   /// The run's output is taken meanwhile: with a full pipe it would stand still.
   template <class Condition>
   bool eventually(const Condition& condition) {
-    return RosDouble::eventually([&] {
+    return test_support::eventually([&] {
       rtd_.take_output();
       return condition();
     });

@@ -9,11 +9,13 @@
 #include <chrono>
 #include <thread>
 
+#include "tests/support/eventually.hpp"
 #include "tests/support/inbox.hpp"
 
 namespace rtd::link {
 namespace {
 
+using test_support::eventually;
 using namespace std::chrono_literals;
 using ::testing::Each;
 
@@ -49,12 +51,6 @@ class OneWayTest : public ::testing::TestWithParam<std::pair<const char*, const 
         in_->tick();
       }
     });
-  }
-  template <class Holds>
-  static bool eventually(Holds&& holds, std::chrono::milliseconds patience = 10s) {
-    const auto until = std::chrono::steady_clock::now() + patience;
-    while (!holds() && std::chrono::steady_clock::now() < until) std::this_thread::sleep_for(5ms);
-    return holds();
   }
   static std::vector<std::byte> bytes(std::size_t size, int number) {
     std::vector<std::byte> cdr(size, static_cast<std::byte>(number % 251));

@@ -16,24 +16,16 @@
 #include "common/bus/message_cdr.hpp"
 #include "common/msg/largest_sample.hpp"
 #include "common/service/run_service.hpp"
+#include "tests/support/eventually.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
 
 namespace rtd::service {
 namespace {
 
+using test_support::eventually;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace std::chrono_literals;
-
-/// Waits until the condition holds, at most five seconds.
-template <class Condition>
-bool eventually(Condition condition) {
-  for (int i = 0; i < 1000; ++i) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(5ms);
-  }
-  return false;
-}
 
 bus::BusOptions domain(std::uint32_t number) {
   bus::BusOptions options;

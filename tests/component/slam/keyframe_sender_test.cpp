@@ -9,6 +9,7 @@
 #include "common/ros_codec/wire.hpp"
 #include "tests/support/feature_world.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/settled_map.hpp"
 
 namespace rtd::slam {
@@ -68,7 +69,7 @@ class KeyframeSenderTest : public testing::Test {
   static bus::BusOptions options() {
     static std::uint32_t domain = 80;
     bus::BusOptions options;
-    options.vendor = "inprocess";
+    options.vendor = bus::inprocess::vendor();
     options.domain = domain++;
     return options;
   }

@@ -15,10 +15,12 @@
 #include "common/bus/fastdds/participant.hpp"
 #include "common/bus/fastdds/qos_mapping.hpp"
 #include "common/bus/host/ring_folder.hpp"
+#include "tests/support/eventually.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
 
+using test_support::eventually;
 using ::testing::IsEmpty;
 
 constexpr int kRingsDomain = 95;
@@ -36,16 +38,6 @@ std::multiset<std::string> mapped_rings() {
 std::size_t shared_rings() {
   const std::multiset<std::string> all = mapped_rings();
   return all.size() - std::set<std::string>(all.begin(), all.end()).size();
-}
-
-template <class Condition>
-bool eventually(Condition condition) {
-  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  return true;
 }
 
 /// Our reader of frames, and writers and readers that share rings by a policy of their own.
