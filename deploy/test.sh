@@ -43,7 +43,7 @@ built=$SECONDS
 
 status=0
 # One more than there are cores: tests of several processes mostly wait.
-ctest --test-dir "$root/build/release" -j "$(nproc)" --output-on-failure --no-tests=error "${chosen[@]}" "$@" || status=$?
+ctest --test-dir "$root/build/release" -j "$(($(nproc) + 1))" --output-on-failure --no-tests=error "${chosen[@]}" "$@" || status=$?
 list_skipped
 echo "test: tests took $((SECONDS - built)) s, total $((SECONDS - started)) s"
 if [ "$status" -eq 0 ]; then

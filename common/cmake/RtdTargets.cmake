@@ -147,9 +147,9 @@ function(rtd_test name)
   set_tests_properties(${ARG_LABEL}.${name} PROPERTIES LABELS ${ARG_LABEL} SKIP_RETURN_CODE 77
                        TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT})
   # What keeps time, or loads all cores: not next to other tests. Of the other tests with several processes, which mostly
-  # wait, one at a time, and one of those that are whole runs.
+  # wait, one at a time, and one of those that are whole runs: these two rows of tests are the longest, so they start first.
   if(ARG_WAITS)
-    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RESOURCE_LOCK processes)
+    set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RESOURCE_LOCK processes COST 10000)
   elseif(ARG_SERIAL OR (NOT ARG_PARALLEL AND ARG_LABEL MATCHES "^(component|interop)$"))
     set_tests_properties(${ARG_LABEL}.${name} PROPERTIES RUN_SERIAL ON)
   endif()
@@ -178,6 +178,9 @@ function(rtd_test_part test part filter)
     set_property(TEST ${test}.${part} APPEND PROPERTY LABELS nightly)
   endif()
   set_tests_properties(${test}.${part} PROPERTIES ENVIRONMENT_MODIFICATION "GTEST_FILTER=set:${filter}" ${ARGN})
+  if("RESOURCE_LOCK" IN_LIST ARGN)
+    set_tests_properties(${test}.${part} PROPERTIES COST 10000)
+  endif()
   set_tests_properties(${test} PROPERTIES RTD_PARTS "${parts}" ENVIRONMENT_MODIFICATION "GTEST_FILTER=set:-${others}")
 endfunction()
 
