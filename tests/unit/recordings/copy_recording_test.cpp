@@ -90,7 +90,7 @@ TEST(Ros1ToCdr, messages_that_are_no_such_message_are_refused) {
 class CopyRecordingTest : public ::testing::Test {
  protected:
   CopiedRecording copy(const std::string& source) {
-    return copy_recording(open(source), folder_ / "new.mcap", mcap::Compression::kZstd, [](std::uint64_t) {});
+    return copy_recording(open(source), folder_ / "new.mcap", mcap::Compression::kZstd, nullptr, [](std::uint64_t) {});
   }
   std::vector<Sample> copied() { return messages_of(*open(folder_ / "new.mcap").source); }
 

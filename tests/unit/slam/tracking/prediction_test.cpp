@@ -130,11 +130,11 @@ TEST(Prediction, few_landmarks_are_better_than_none) {
 }
 
 TEST(CalibrationCovariance, grows_with_way_and_turn_from_the_origin) {
-  constexpr double kScene_m = 3, kShare = 0.01, kTurn_rad = 0.5;
-  EXPECT_TRUE(calibration_covariance(Eigen::Isometry3d::Identity(), kScene_m, kShare).isZero());
+  constexpr double kFar_m = 3, kShare = 0.01, kTurn_rad = 0.5;
+  EXPECT_TRUE(calibration_covariance(Eigen::Isometry3d::Identity(), kFar_m, kShare).isZero());
   Eigen::Isometry3d T_world_camera(Eigen::AngleAxisd(kTurn_rad, Eigen::Vector3d::UnitY()));
   T_world_camera.translation() = Eigen::Vector3d(0, 3, 4);
-  const geometry::Vector6d sigma = calibration_covariance(T_world_camera, kScene_m, kShare).diagonal().cwiseSqrt();
+  const geometry::Vector6d sigma = calibration_covariance(T_world_camera, kFar_m, kShare).diagonal().cwiseSqrt();
   EXPECT_NEAR(sigma(0), std::hypot(0.05, 0.015), 1e-12);  // 1 % of 5 m, and of half a radian at 3 m
   EXPECT_NEAR(sigma(3), 0.005, 1e-12);
 }
