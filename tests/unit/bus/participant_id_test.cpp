@@ -35,7 +35,7 @@ namespace fs = std::filesystem;
 constexpr int kDomain = 95;
 
 std::string port_name(std::uint32_t id) {
-  return std::string(kShmPrefix) + "_port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id);
+  return std::string(kShmPrefix) + "port" + std::to_string(7400 + 250 * kDomain + 11 + 2 * id);
 }
 
 class ParticipantId : public testing::Test {
