@@ -235,6 +235,11 @@ std::string text_of_one(const Judged& judged, const EvalOptions& options) {
   return evaluation_table(judged, options) + (integrity ? figure_rows(integrity_figures(*integrity)) : "");
 }
 
+/// Of a column of the comparison; a run of less than a second has no error per second.
+std::string cell(double value) {
+  return std::isfinite(value) ? fmt::format(" {:>9.4f}", value) : fmt::format(" {:>9}", "-");
+}
+
 /// One row per estimate, in the order given.
 std::string comparison_table(const std::vector<Judged>& all, const EvalOptions& options) {
   std::size_t width = 8;
@@ -244,11 +249,11 @@ std::string comparison_table(const std::vector<Judged>& all, const EvalOptions& 
                                  "poses", "coverage", "ATE rmse", "median", "max [m]", "RPE [m/s]", "[deg/s]");
   for (const auto& [inputs, e] : all) {
     const Statistics& ate = e.ate.error_m;
-    text += fmt::format("{:<{}} {:>6} {:>7.2f} % ", inputs.name, width, e.estimate_poses, 100 * e.coverage.fraction);
+    text += fmt::format("{:<{}} {:>6} {:>7.2f} %", inputs.name, width, e.estimate_poses, 100 * e.coverage.fraction);
     text += ate.count == 0
-                ? std::string("  no ATE\n")
-                : fmt::format("{:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f}\n", ate.rmse, ate.median, ate.max,
-                              e.rpe_per_second.translation_m.rmse, e.rpe_per_second.rotation_rad.rmse * kRadToDeg);
+                ? std::string("   no ATE\n")
+                : cell(ate.rmse) + cell(ate.median) + cell(ate.max) + cell(e.rpe_per_second.translation_m.rmse) +
+                      cell(e.rpe_per_second.rotation_rad.rmse * kRadToDeg) + "\n";
   }
   return text;
 }

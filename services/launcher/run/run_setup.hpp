@@ -28,7 +28,7 @@ struct LauncherConfig {
   int connect_timeout_ms = 15000;
   int interrupt_grace_ms = 1200;
   int finish_grace_ms = 10000;
-  int samples = 12;
+  int samples = 24;
 
   void bind(auto& binder) {
     binder.field("max_restarts", max_restarts, {0, 100}, "deaths of a service in a row before it is given up");

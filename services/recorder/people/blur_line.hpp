@@ -14,7 +14,7 @@
 namespace rtd::recorder {
 
 /// Messages on their way into a recording without people. They keep their order; all wait while the first one is an
-/// image whose detections may still come, for two seconds or 128 MiB at most. For one thread. "Now" is any steadily
+/// image whose detections may still come, for ten seconds or 128 MiB at most. For one thread. "Now" is any steadily
 /// growing time.
 class BlurLine {
  public:
@@ -26,7 +26,7 @@ class BlurLine {
   const PeopleBlur& people() const { return people_; }
 
  private:
-  static constexpr std::int64_t kPatienceNs = 2'000'000'000;
+  static constexpr std::int64_t kPatienceNs = 10'000'000'000;  ///< of a slow run, too
   static constexpr std::uint64_t kMostBytes = 128 * 1024 * 1024;
   static constexpr std::size_t kMostBatches = 1000;
 

@@ -56,7 +56,7 @@ TEST(MoverTrails, a_trail_with_a_gap_or_with_time_that_went_back_begins_again) {
 
 TEST(MoverTrails, a_velocity_that_may_be_noise_says_that_it_rests) {
   MoverTrails trails;
-  const auto last = [&trails](double sigma_m_s) {
+  const auto last = [&trails](double sigma_m_s) -> bool {
     trails = {};
     trails.rest(one(0, 0, 1, 0.5, sigma_m_s));
     return trails.rest(one(1, 0.5, 1.5, 0.5, sigma_m_s))[0];

@@ -167,6 +167,12 @@ TEST_F(EvalCommand, several_estimates_share_a_table_a_json_and_a_plot) {
   EXPECT_EQ(json["estimates"][1]["estimate"], same);
 }
 
+TEST_F(EvalCommand, an_estimate_of_less_than_a_second_has_no_error_per_second_in_the_table) {
+  const std::string brief = folder_.write("brief.txt", tum_text(winding_path(5, 0.1)));
+  EXPECT_THAT(run({estimate_, brief, truth_}).out,
+              AllOf(Not(HasSubstr("nan")), HasSubstr("0.0000         -         -\n")));
+}
+
 TEST_F(EvalCommand, one_estimate_of_several_without_pairs_is_named_and_the_others_are_judged) {
   Trajectory later = winding_path(60, 0.1);
   for (StampedPose& pose : later) pose.stamp_ns += 5'000'000'000'000;
