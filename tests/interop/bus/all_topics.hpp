@@ -46,6 +46,12 @@ void for_each_topic(Visitor visit) {
   visit(kMovingPoints);
   visit(kDiagnostics);
   visit(kMap);
+  visit(kKeyframeFeatures);
+  visit(kKeyframeRequest);
+  visit(kSubmap);
+  visit(kAtlas);
+  visit(kAtlasRobots);
+  visit(kAtlasPoints);
   visit(kMovers);
   visit(kMoverBoxes);
   visit(kMoverMarkers);

@@ -55,6 +55,11 @@ inline void complete(msg::FeatureFrame& frame) {
   frame.intrinsics = {500, 500, 320, 240};
   frame.count = frame.removed = 2;
 }
+inline void complete(msg::KeyframeFeatures& keyframe) {
+  keyframe.width = 640;
+  keyframe.height = 480;
+  keyframe.intrinsics = {500, 500, 320, 240};
+}
 inline void complete(msg::Image& image) {
   image.width = 4;
   image.height = 2;
