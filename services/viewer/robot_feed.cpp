@@ -20,11 +20,11 @@ double finished_ms(const msg::TrackingResult& result) {
   return wall_clock_ms() - (age_ms >= 0 && age_ms < kOldest_ms ? age_ms : 0);
 }
 
-/// Topics below "rt/" may be those of a camera driver that a robot with a name reads.
+/// Topics below "rt/" may be those of a camera driver that a robot with a name reads; an atlas serves several robots.
 bool is_of_unnamed_robot(const std::string& wire_name) {
   const bool own = bus::split_robot(wire_name).robot.empty() && bus::topic_of_robot(wire_name, "a") != wire_name;
   return own && !wire_name.starts_with("rt/") && wire_name != bus::topics::kStatus.name &&
-         wire_name != ros2::kSchemasTopic;
+         wire_name != bus::topics::kAtlas.name && wire_name != ros2::kSchemasTopic;
 }
 
 /// Of a message in memory, nearly.

@@ -13,6 +13,7 @@ using ::testing::IsEmpty;
 TEST(ShownRobots, are_those_with_topics_of_their_own) {
   EXPECT_THAT(shown_robots({"rtd/anna/status", "rt/bert/slam/odometry", "rtd/status"}), ElementsAre("anna", "bert"));
   EXPECT_THAT(shown_robots({"rtd/status", "rtd/frame"}), ElementsAre(""));
+  EXPECT_THAT(shown_robots({"rtd/anna/status", "rtd/atlas", "rt/atlas/points"}), ElementsAre("anna"));
   EXPECT_THAT(shown_robots({"rr/recorder/startReply", "rtd/anna/status"}), ElementsAre("", "anna"));
 }
 
