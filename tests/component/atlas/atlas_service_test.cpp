@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/atlas/status_command.hpp"
@@ -147,6 +148,13 @@ TEST_F(AtlasServiceTest, continues_with_the_map_that_it_saved) {
     return robots.size() == 2 && std::ranges::all_of(robots, &msg::AtlasRobot::met) && robots[1].meetings == 0;
   })) << "their keyframes are recognised, without another meeting";
   EXPECT_EQ(atlas_.all().back()->robots[0].missing, 0U);
+}
+
+TEST_F(AtlasServiceTest, a_map_that_is_none_ends_the_start_with_its_cause) {
+  std::ofstream(config_.map_file) << "no map";
+  launch(service::Pace::kRealtime);
+  EXPECT_THAT([this] { running_code(); }, testing::ThrowsMessage<service::ConfigError>(testing::AllOf(
+                                              testing::HasSubstr("atlas.map"), testing::HasSubstr("not a map file"))));
 }
 
 }  // namespace
