@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/core/slam_system.hpp"
-
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -14,24 +12,18 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
-#include "tests/support/feature_world.hpp"
-#include "tests/support/settled_map.hpp"
+#include "tests/unit/slam/slam_run.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using msg::TrackingState;
+using test::make_slam;
+using test::position_error_m;
 using test_support::FeatureWorld;
 using test_support::frozen_clock;
 
 constexpr std::uint64_t kFrames = 90;
-
-/// The features are those of a camera that is known exactly.
-SlamSystem make_slam(MappingMode mode = MappingMode::kSynchronous) {
-  SlamConfig config = test_support::settled();
-  config.sensor.calibration_error = 0;
-  return {config, mode, frozen_clock};
-}
 
 std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {
   auto frame = FeatureWorld({}).view(seq, Eigen::Isometry3d::Identity());
@@ -39,53 +31,49 @@ std::unique_ptr<msg::FeatureFrame> empty_view(std::uint64_t seq) {
   return frame;
 }
 
-double position_error_m(const Eigen::Isometry3d& estimate, std::uint64_t seq) {
-  return (estimate.translation() - FeatureWorld::T_world_camera(seq).translation()).norm();
-}
+class SlamSystemTest : public testing::Test {
+ protected:
+  const FeatureWorld world_{{}};
+  SlamSystem slam_ = make_slam();
+};
 
-TEST(SlamSystem, follows_the_camera_through_an_exact_world) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, follows_the_camera_through_an_exact_world) {
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
-    const SlamOutput output = slam.process(*world.view(seq));
+    const SlamOutput output = slam_.process(*world_.view(seq));
     ASSERT_EQ(output.result.state, TrackingState::kOk) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
   }
 }
 
-TEST(SlamSystem, refuses_images_and_cameras_that_cannot_be) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, refuses_images_and_cameras_that_cannot_be) {
   constexpr std::uint32_t kMax = std::numeric_limits<std::uint32_t>::max();
   std::uint64_t seq = 0;
   for (const auto& [width, height] : {std::pair(kMax, kMax), {0x7FFFFFFFU, 1U}, {1U, 0x80000000U}, {1921U, 10U}}) {
-    const auto frame = world.view(seq++);
+    const auto frame = world_.view(seq++);
     frame->width = width;
     frame->height = height;
-    EXPECT_THAT(slam.process(*frame).problem, testing::HasSubstr("image size")) << width << "x" << height;
+    EXPECT_THAT(slam_.process(*frame).problem, testing::HasSubstr("image size")) << width << "x" << height;
   }
   for (const double focal_px : {1e300, 1e-300, std::nan("")}) {
-    const auto frame = world.view(seq++);
+    const auto frame = world_.view(seq++);
     frame->intrinsics[0] = focal_px;
-    EXPECT_THAT(slam.process(*frame).problem, testing::HasSubstr("intrinsics")) << focal_px;
+    EXPECT_THAT(slam_.process(*frame).problem, testing::HasSubstr("intrinsics")) << focal_px;
   }
-  EXPECT_EQ(slam.process(*world.view(seq)).result.state, TrackingState::kOk) << "continues with good ones";
+  EXPECT_EQ(slam_.process(*world_.view(seq)).result.state, TrackingState::kOk) << "continues with good ones";
 }
 
-TEST(SlamSystem, follows_stamps_that_jump_to_the_ends_of_time) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, follows_stamps_that_jump_to_the_ends_of_time) {
   constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max(),
                          kMin = std::numeric_limits<std::int64_t>::min();
   const std::array<std::int64_t, 8> stamps{0, kMax, kMin, 0, kMin + 1, kMax - 1, -4'000'000'000'000'000'000, kMax};
   for (std::uint64_t seq = 0; seq < 5 * stamps.size(); ++seq) {
-    const auto frame = world.view(seq);
+    const auto frame = world_.view(seq);
     frame->stamp_ns = stamps[seq % stamps.size()];
-    EXPECT_TRUE(slam.process(*frame).result.T_world_camera.matrix().allFinite()) << seq;
+    EXPECT_TRUE(slam_.process(*frame).result.T_world_camera.matrix().allFinite()) << seq;
   }
 }
 
-TEST(SlamSystem, the_first_pose_says_where_the_world_is) {
+TEST(SlamSystems, the_first_pose_says_where_the_world_is) {
   const FeatureWorld world({});
   SlamConfig config = test_support::settled();
   config.first_pose = geometry::se3_exp((geometry::Vector6d() << 0.2, 0, 0.5, -1.2, 1.2, -1.2).finished());
@@ -105,7 +93,7 @@ TEST(SlamSystem, the_first_pose_says_where_the_world_is) {
   EXPECT_TRUE(again.result.T_world_camera.isApprox(config.first_pose, 1e-9)) << "also after a reset";
 }
 
-TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
+TEST(SlamSystems, stays_within_a_centimetre_with_noise) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
@@ -124,7 +112,7 @@ TEST(SlamSystem, stays_within_a_centimetre_with_noise) {
   EXPECT_GT(slam.map_points().size(), 300U);
 }
 
-TEST(SlamSystem, gives_the_same_bits_twice) {
+TEST(SlamSystems, gives_the_same_bits_twice) {
   const FeatureWorld world = FeatureWorld::noisy();
   std::array<std::string, 2> texts;
   for (std::string& text : texts) {
@@ -138,7 +126,7 @@ TEST(SlamSystem, gives_the_same_bits_twice) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
-TEST(SlamSystem, ends_without_having_seen_a_frame) {
+TEST(SlamSystems, ends_without_having_seen_a_frame) {
   for (const MappingMode mode : {MappingMode::kSynchronous, MappingMode::kThreaded}) {
     SlamSystem slam = make_slam(mode);
     slam.finish();
@@ -147,7 +135,7 @@ TEST(SlamSystem, ends_without_having_seen_a_frame) {
   }
 }
 
-TEST(SlamSystem, maps_in_a_thread_as_well) {
+TEST(SlamSystems, maps_in_a_thread_as_well) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam(MappingMode::kThreaded);
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
@@ -162,7 +150,7 @@ TEST(SlamSystem, maps_in_a_thread_as_well) {
   }
 }
 
-TEST(SlamSystem, is_lost_without_features_and_recovers) {
+TEST(SlamSystems, is_lost_without_features_and_recovers) {
   const FeatureWorld world({});
   SlamConfig config = test_support::settled();
   config.tracker.recently_lost_s = 0.14;  // five frames
@@ -186,106 +174,6 @@ TEST(SlamSystem, is_lost_without_features_and_recovers) {
   EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 1e-3);
 }
 
-/// Of a view, some features of the world; the others look like nothing before.
-std::unique_ptr<msg::FeatureFrame> mostly_hidden(const FeatureWorld& world, std::uint64_t seq,
-                                                 std::uint32_t shown = 70) {
-  auto frame = world.view(seq);
-  const auto other = FeatureWorld({.seed = 100}).view(seq);
-  for (std::uint32_t i = shown; i < frame->count; ++i) {
-    frame->features[i].descriptor = other->features[i % other->count].descriptor;
-  }
-  return frame;
-}
-
-TEST(SlamSystem, few_landmarks_suffice_where_the_motion_leads) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  constexpr std::uint64_t kSeen = 20;
-  for (std::uint64_t seq = 0; seq < kSeen; ++seq) slam.process(*world.view(seq));
-  const SlamOutput expected = slam.process(*mostly_hidden(world, kSeen));
-  EXPECT_EQ(expected.result.state, TrackingState::kOk) << expected.problem;
-  EXPECT_LE(expected.result.inliers, 80U);
-  EXPECT_LT(position_error_m(expected.result.T_world_camera, kSeen), 0.01);
-}
-
-TEST(SlamSystem, continues_from_frame_to_frame_without_the_map) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  slam.process(*world.view(0));
-  const SlamOutput few = slam.process(*mostly_hidden(world, 1, 26));
-  ASSERT_EQ(few.result.state, TrackingState::kOdometry) << few.problem;
-  EXPECT_THAT(few.problem, testing::HasSubstr("the map is not recognised"));
-  EXPECT_LT(position_error_m(few.result.T_world_camera, 1), 0.02);
-  EXPECT_EQ(slam.keyframes().size(), 2U) << "a young map grows at once";
-  const SlamOutput back = slam.process(*world.view(2));
-  EXPECT_EQ(back.result.state, TrackingState::kOk) << back.problem;
-  EXPECT_EQ(slam.maps().size(), 1U);
-  EXPECT_EQ(slam.trajectory().size(), 3U) << "one trajectory";
-}
-
-/// A map of at least 20 keyframes, which odometry leaves as it is.
-SlamSystem make_slam_that_maps_densely(double new_map_after_s) {
-  SlamConfig config = test_support::settled();
-  config.sensor.calibration_error = 0;
-  config.keyframe.min_gap_s = 0;
-  config.keyframe.reference_ratio = 1;
-  config.mapper.redundant_ratio = config.mapper.old_redundant_ratio = 1;
-  config.place.new_map_after_s = new_map_after_s;
-  return {config, MappingMode::kSynchronous, frozen_clock};
-}
-
-/// Returns the next frame.
-std::uint64_t map_until_old(SlamSystem& slam, const FeatureWorld& world) {
-  std::uint64_t seq = 0;
-  while (slam.keyframes().size() < 22 && seq < 300) slam.process(*world.view(seq++));
-  EXPECT_GE(slam.keyframes().size(), 22U);
-  return seq;
-}
-
-TEST(SlamSystem, odometry_continues_beside_an_old_map_and_joins_it_again) {
-  const FeatureWorld world = FeatureWorld::noisy();
-  SlamSystem slam = make_slam_that_maps_densely(3);
-  constexpr std::uint64_t kLost = 15;
-  const std::uint64_t seen = map_until_old(slam, world);
-  const std::size_t keyframes = slam.keyframes().size();
-  double variance_m2 = 0;
-  std::uint64_t seq = seen;
-  for (; seq < seen + kLost; ++seq) {
-    const SlamOutput output = slam.process(*mostly_hidden(world, seq, 26));
-    ASSERT_EQ(output.result.state, TrackingState::kOdometry) << "frame " << seq << ": " << output.problem;
-    EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.05) << "frame " << seq;
-    EXPECT_GT(output.result.covariance.trace(), variance_m2) << "frame " << seq;
-    variance_m2 = output.result.covariance.trace();
-  }
-  EXPECT_EQ(slam.keyframes().size(), keyframes) << "an old map does not grow by what is not recognised";
-  const SlamOutput back = slam.process(*world.view(seq));
-  EXPECT_EQ(back.result.state, TrackingState::kOk) << back.problem;
-  EXPECT_LT(position_error_m(back.result.T_world_camera, seq), 0.01);
-  const std::vector<StampedPose> trajectory = slam.trajectory();
-  ASSERT_EQ(trajectory.size(), seq + 1) << "one trajectory";
-  for (std::uint64_t i = seen; i < seen + kLost; ++i)
-    EXPECT_LT(position_error_m(trajectory[i].T_world_body, i), 0.02) << "mended frame " << i;
-}
-
-TEST(SlamSystem, an_old_map_grows_at_the_pose_of_lasting_odometry) {
-  const FeatureWorld world = FeatureWorld::noisy();
-  SlamSystem slam = make_slam_that_maps_densely(0.29);
-  const std::uint64_t seen = map_until_old(slam, world);
-  const std::size_t keyframes = slam.keyframes().size();
-  std::uint64_t seq = seen;
-  for (; seq < seen + 15 && slam.keyframes().size() == keyframes; ++seq) {
-    const SlamOutput output = slam.process(*mostly_hidden(world, seq, 26));
-    ASSERT_TRUE(msg::is_measured(output.result.state)) << "frame " << seq << ": " << output.problem;
-  }
-  EXPECT_EQ(seq, seen + 10) << "not before";
-  EXPECT_EQ(slam.maps().size(), 1U) << "a second map is the last resort";
-  slam.read_map([](const Map& map) {
-    EXPECT_EQ(map.check_invariants(), "");
-    EXPECT_TRUE(std::prev(map.keyframes().end())->second.covisible.empty()) << "nothing bends the old part";
-  });
-  EXPECT_EQ(slam.trajectory().size(), seq) << "one trajectory";
-}
-
 /// Half of the features lie on a thing that is carried along with the camera.
 std::unique_ptr<msg::FeatureFrame> beside_carried_thing(const FeatureWorld& world, std::uint64_t seq,
                                                         std::uint8_t flags) {
@@ -298,47 +186,39 @@ std::unique_ptr<msg::FeatureFrame> beside_carried_thing(const FeatureWorld& worl
   return frame;
 }
 
-TEST(SlamSystem, what_is_in_question_does_not_take_the_pose_along) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, what_is_in_question_does_not_take_the_pose_along) {
   for (std::uint64_t seq = 0; seq < 20; ++seq) {
     const std::uint8_t flags = seq < 10 ? msg::kFeatureInQuestion : msg::kFeatureRemoved;
-    const SlamOutput output = slam.process(*beside_carried_thing(world, seq, flags));
+    const SlamOutput output = slam_.process(*beside_carried_thing(world_, seq, flags));
     ASSERT_TRUE(msg::is_measured(output.result.state)) << "frame " << seq << ": " << output.problem;
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 0.01) << "frame " << seq;
   }
 }
 
-TEST(SlamSystem, finds_back_after_a_jump) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  for (std::uint64_t seq = 0; seq < 10; ++seq) slam.process(*world.view(seq));
+TEST_F(SlamSystemTest, finds_back_after_a_jump) {
+  for (std::uint64_t seq = 0; seq < 10; ++seq) slam_.process(*world_.view(seq));
   constexpr std::uint64_t kFar = 30;  // half a metre and twenty degrees away, in the next frame
-  auto jumped = world.view(10, FeatureWorld::T_world_camera(kFar));
-  const SlamOutput output = slam.process(*jumped);
+  auto jumped = world_.view(10, FeatureWorld::T_world_camera(kFar));
+  const SlamOutput output = slam_.process(*jumped);
   ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
   EXPECT_LT(position_error_m(output.result.T_world_camera, kFar), 1e-3);
 }
 
-TEST(SlamSystem, stays_initializing_without_depth) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, stays_initializing_without_depth) {
   for (std::uint64_t seq = 0; seq < 3; ++seq) {
-    auto frame = world.view(seq);
+    auto frame = world_.view(seq);
     for (msg::Feature& feature : frame->features) feature.depth_m = 0;
-    const SlamOutput output = slam.process(*frame);
+    const SlamOutput output = slam_.process(*frame);
     EXPECT_EQ(output.result.state, TrackingState::kInitializing);
     EXPECT_THAT(output.problem, ::testing::HasSubstr("depth"));
     EXPECT_TRUE(output.changes.empty());
   }
-  EXPECT_EQ(slam.process(*world.view(3)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam_.process(*world_.view(3)).result.state, TrackingState::kOk);
 }
 
-TEST(SlamSystem, drops_features_with_impossible_values_and_counts_them) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  slam.process(*world.view(0));
-  auto frame = world.view(1);
+TEST_F(SlamSystemTest, drops_features_with_impossible_values_and_counts_them) {
+  slam_.process(*world_.view(0));
+  auto frame = world_.view(1);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   frame->features[0].u_px = nan;
   frame->features[1].depth_m = nan;
@@ -347,49 +227,43 @@ TEST(SlamSystem, drops_features_with_impossible_values_and_counts_them) {
   frame->features[4].static_probability = nan;
   frame->features[5].static_probability = 2;
   frame->features[6].octave = 8;
-  const SlamOutput output = slam.process(*frame);
+  const SlamOutput output = slam_.process(*frame);
   EXPECT_EQ(output.invalid_features, 7U);
   EXPECT_EQ(output.result.state, TrackingState::kOk);
   EXPECT_LT(position_error_m(output.result.T_world_camera, 1), 1e-3);
 }
 
-TEST(SlamSystem, refuses_frames_without_intrinsics_or_size) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  auto frame = world.view(0);
+TEST_F(SlamSystemTest, refuses_frames_without_intrinsics_or_size) {
+  auto frame = world_.view(0);
   frame->intrinsics = {0, 0, 0, 0};
-  EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("intrinsics"));
-  slam.process(*world.view(1));
-  frame = world.view(2);
+  EXPECT_THAT(slam_.process(*frame).problem, ::testing::HasSubstr("intrinsics"));
+  slam_.process(*world_.view(1));
+  frame = world_.view(2);
   for (const double readout_s : {0.11, -0.11, std::nan("")}) {
     frame->readout_s = readout_s;
-    EXPECT_THAT(slam.process(*frame).problem, ::testing::HasSubstr("readout time")) << readout_s;
-    EXPECT_EQ(slam.readout_s(), 0);
+    EXPECT_THAT(slam_.process(*frame).problem, ::testing::HasSubstr("readout time")) << readout_s;
+    EXPECT_EQ(slam_.readout_s(), 0);
   }
-  frame = world.view(2);
+  frame = world_.view(2);
   frame->count = msg::kMaxFeatures + 1;
-  const SlamOutput output = slam.process(*frame);
+  const SlamOutput output = slam_.process(*frame);
   EXPECT_NE(output.result.state, TrackingState::kOk);
   EXPECT_THAT(output.problem, ::testing::HasSubstr("out of range"));
-  EXPECT_EQ(slam.process(*world.view(3)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam_.process(*world_.view(3)).result.state, TrackingState::kOk);
 }
 
-TEST(SlamSystem, keeps_its_map_when_the_source_starts_again) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
-  for (std::uint64_t seq = 0; seq < 40; ++seq) slam.process(*world.view(seq));
-  const SlamOutput output = slam.process(*world.view(0));
-  EXPECT_EQ(slam.source_restarts(), 1U);
+TEST_F(SlamSystemTest, keeps_its_map_when_the_source_starts_again) {
+  for (std::uint64_t seq = 0; seq < 40; ++seq) slam_.process(*world_.view(seq));
+  const SlamOutput output = slam_.process(*world_.view(0));
+  EXPECT_EQ(slam_.source_restarts(), 1U);
   ASSERT_EQ(output.result.state, TrackingState::kOk) << output.problem;
   EXPECT_LT(position_error_m(output.result.T_world_camera, 0), 1e-3);
-  EXPECT_EQ(slam.process(*world.view(1)).result.state, TrackingState::kOk);
+  EXPECT_EQ(slam_.process(*world_.view(1)).result.state, TrackingState::kOk);
 }
 
-TEST(SlamSystem, never_uses_removed_features) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, never_uses_removed_features) {
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    auto frame = world.view(seq);
+    auto frame = world_.view(seq);
     std::uint32_t removed = 0;
     for (std::uint32_t i = 0; i < frame->count; ++i) {
       msg::Feature& feature = frame->features[i];
@@ -400,26 +274,24 @@ TEST(SlamSystem, never_uses_removed_features) {
       feature.flags = msg::kFeatureRemoved;
       ++removed;
     }
-    const SlamOutput output = slam.process(*frame);
+    const SlamOutput output = slam_.process(*frame);
     ASSERT_EQ(output.result.state, TrackingState::kOk);
     EXPECT_EQ(output.result.features_removed, removed);
     EXPECT_LT(position_error_m(output.result.T_world_camera, seq), 1e-3) << "frame " << seq;
   }
 }
 
-TEST(SlamSystem, low_static_probability_takes_the_weight_from_moving_objects) {
-  const FeatureWorld world({});
-  SlamSystem slam = make_slam();
+TEST_F(SlamSystemTest, low_static_probability_takes_the_weight_from_moving_objects) {
   double worst_m = 0;
   for (std::uint64_t seq = 0; seq < 30; ++seq) {
-    auto frame = world.view(seq);
+    auto frame = world_.view(seq);
     for (std::uint32_t i = 0; i < frame->count; ++i) {
       msg::Feature& feature = frame->features[i];
       if (feature.u_px >= 200) continue;
       feature.v_px += 0.4F * static_cast<float>(seq);  // a third of the image creeps away, too slowly to be an outlier
       feature.static_probability = 0.01F;
     }
-    const SlamOutput output = slam.process(*frame);
+    const SlamOutput output = slam_.process(*frame);
     ASSERT_EQ(output.result.state, TrackingState::kOk);
     worst_m = std::max(worst_m, position_error_m(output.result.T_world_camera, seq));
   }
@@ -441,7 +313,7 @@ std::unique_ptr<msg::FeatureFrame> wall_and_walker(const FeatureWorld& wall, con
   return frame;
 }
 
-TEST(SlamSystem, who_walks_near_by_does_not_outweigh_a_far_wall_that_was_seen_at_rest) {
+TEST(SlamSystems, who_walks_near_by_does_not_outweigh_a_far_wall_that_was_seen_at_rest) {
   FeatureWorld::Options options{.points = 900, .min_depth_m = 5.2, .max_depth_m = 5.6};
   options.noise_px = 0.5;
   const FeatureWorld wall(options);
@@ -459,7 +331,7 @@ TEST(SlamSystem, who_walks_near_by_does_not_outweigh_a_far_wall_that_was_seen_at
   EXPECT_LT(worst_m, 0.2) << "he walked 0.9 m; weights without the distance follow him for 0.4";
 }
 
-TEST(SlamSystem, changes_are_the_whole_history_of_the_keyframes) {
+TEST(SlamSystems, changes_are_the_whole_history_of_the_keyframes) {
   const FeatureWorld world = FeatureWorld::noisy();
   SlamSystem slam = make_slam();
   std::uint64_t changes = 0;
