@@ -11,7 +11,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "common/bus/backend.hpp"
 #include "common/bus/vendors.hpp"
 #include "common/service/config.hpp"
 #include "common/service/load_step.hpp"
@@ -22,6 +21,7 @@
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/frame_header.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
+#include "tests/support/noting_backend.hpp"
 #include "tests/support/service_fixture.hpp"
 
 namespace rtd::detector {
@@ -32,71 +32,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using ::testing::ThrowsMessage;
-
-/// Another bus, which notes on which topics messages are written, in their order.
-class NotingBackend final : public bus::BusBackend {
- public:
-  explicit NotingBackend(std::shared_ptr<bus::BusBackend> backend)
-      : BusBackend(backend->vendor()), backend_(std::move(backend)) {}
-
-  /// DDS names, one for each message on one of `topics`.
-  std::vector<std::string> written(const std::vector<std::string>& topics) const {
-    const std::lock_guard lock(mutex_);
-    std::vector<std::string> chosen;
-    for (const std::string& topic : written_)
-      if (std::ranges::count(topics, topic) > 0) chosen.push_back(topic);
-    return chosen;
-  }
-
-  std::unique_ptr<bus::WriterBackend> create_writer(bus::MessageId id, const std::string& topic,
-                                                    bus::QosProfile profile, bus::StatusCallbacks callbacks) override {
-    return std::make_unique<NotingWriter>(*this, topic,
-                                          backend_->create_writer(id, topic, profile, std::move(callbacks)));
-  }
-  std::unique_ptr<bus::ReaderBackend> create_reader(bus::MessageId id, const std::string& topic,
-                                                    bus::QosProfile profile, bus::ErasedCallback on_message,
-                                                    bus::StatusCallbacks callbacks) override {
-    return backend_->create_reader(id, topic, profile, std::move(on_message), std::move(callbacks));
-  }
-  std::unique_ptr<bus::CallEndpoint> create_calls(const bus::CallTopics& topics, bus::CallRole role,
-                                                  bus::OnCall on_call) override {
-    return backend_->create_calls(topics, role, std::move(on_call));
-  }
-
- private:
-  class NotingWriter final : public bus::WriterBackend {
-   public:
-    NotingWriter(NotingBackend& bus, std::string topic, std::unique_ptr<bus::WriterBackend> writer)
-        : bus_(bus), topic_(std::move(topic)), writer_(std::move(writer)) {}
-    bool write(const void* message) override {
-      bus_.note(topic_);
-      return writer_->write(message);
-    }
-    void* loan() override { return writer_->loan(); }
-    bool write_loaned(void* slot) override {
-      bus_.note(topic_);
-      return writer_->write_loaned(slot);
-    }
-    void discard_loan(void* slot) override { writer_->discard_loan(slot); }
-    int matched() const override { return writer_->matched(); }
-    bool wait_acknowledged(int timeout_ms) override { return writer_->wait_acknowledged(timeout_ms); }
-    bus::WriterId id() const override { return writer_->id(); }
-
-   private:
-    NotingBackend& bus_;
-    const std::string topic_;
-    const std::unique_ptr<bus::WriterBackend> writer_;
-  };
-
-  void note(const std::string& topic) {
-    const std::lock_guard lock(mutex_);
-    written_.push_back(topic);
-  }
-
-  const std::shared_ptr<bus::BusBackend> backend_;
-  mutable std::mutex mutex_;
-  std::vector<std::string> written_;
-};
 
 /// A camera and a filter around one detector service.
 class DetectorServiceTest : public test_support::ServiceFixture<DetectorService> {
@@ -128,6 +63,12 @@ class DetectorServiceTest : public test_support::ServiceFixture<DetectorService>
   static void white_cell_of(cv::Mat image) { image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255)); }
   void send_jpeg(std::int64_t stamp_ns, std::vector<std::uint8_t> data) {
     jpegs_.write({{msg::to_time(stamp_ns), "camera_color_optical_frame"}, "jpeg", std::move(data)});
+  }
+  void expect_refused(const char* text) {
+    service::Heartbeat heartbeat(*bus_, "detector", stop_);
+    service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep, bus_options_};
+    EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
+                ThrowsMessage<service::ConfigError>(HasSubstr(text)));
   }
   std::vector<std::int64_t> answered_stamps() const {
     std::vector<std::int64_t> stamps;
@@ -205,7 +146,7 @@ TEST_F(DetectorServiceTest, writes_the_masks_of_an_image_before_its_boxes) {
   with_masks();
   Inbox<msg::Image> masks;
   receive(bus::topics::kPersonMasks, masks);
-  const auto noting = std::make_shared<NotingBackend>(bus::inprocess::create_backend(bus_options_));
+  const auto noting = std::make_shared<test_support::NotingBackend>(bus::inprocess::create_backend(bus_options_));
   bus::Bus bus(noting);
   auto running = std::async(std::launch::async, [&] {
     service::Heartbeat heartbeat(bus, DetectorService::kName, stop_);
@@ -251,16 +192,12 @@ TEST_F(DetectorServiceTest, computes_no_masks_that_have_no_reader) {
 }
 
 TEST_F(DetectorServiceTest, masks_that_are_asked_for_need_their_network) {
-  service::Heartbeat heartbeat(*bus_, "detector", stop_);
-  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
   config_.masks.use = "on";
   config_.masks.model = (folder_ / "none.onnx").string();
-  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
-              ThrowsMessage<service::ConfigError>(HasSubstr("none.onnx")));
+  expect_refused("none.onnx");
   config_.masks.use = "auto";
   config_.masks.model = config_.model;  // finds boxes
-  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
-              ThrowsMessage<service::ConfigError>(HasSubstr("tiny.onnx")));
+  expect_refused("tiny.onnx");
 }
 
 TEST_F(DetectorServiceTest, continues_with_the_cpu_and_names_the_device_in_its_status) {
@@ -276,10 +213,7 @@ TEST_F(DetectorServiceTest, continues_with_the_cpu_and_names_the_device_in_its_s
 
 TEST_F(DetectorServiceTest, refuses_an_engine_that_does_not_exist) {
   config_.core.engine = "cuda";
-  service::Heartbeat heartbeat(*bus_, "detector", stop_);
-  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kRealtime, bus_options_};
-  EXPECT_THAT([&] { DetectorService(config_, runtime); },
-              ThrowsMessage<service::ConfigError>(HasSubstr("detector.engine: 'cuda' is not an engine")));
+  expect_refused("detector.engine: 'cuda' is not an engine");
 }
 
 TEST_F(DetectorServiceTest, takes_the_newest_frame_in_realtime_and_counts_the_others) {
@@ -406,15 +340,11 @@ TEST_F(DetectorServiceTest, ends_within_a_second_while_frames_wait) {
 }
 
 TEST_F(DetectorServiceTest, refuses_to_start_without_weights_or_with_broken_ones) {
-  service::Heartbeat heartbeat(*bus_, "detector", stop_);
-  service::Runtime runtime{*bus_, heartbeat, stop_, service::Pace::kLockstep};
   config_.model = "/nowhere/model.onnx";
-  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
-              ThrowsMessage<service::ConfigError>(HasSubstr("deploy/setup.sh --models")));
+  expect_refused("deploy/setup.sh --models");
   config_.model = (folder_ / "broken.onnx").string();
   std::ofstream(config_.model) << "<html>404</html>";
-  EXPECT_THAT([&] { const DetectorService service(config_, runtime); },
-              ThrowsMessage<service::ConfigError>(HasSubstr("broken.onnx")));
+  expect_refused("broken.onnx");
 }
 
 TEST_F(DetectorServiceTest, answers_with_the_real_network) {

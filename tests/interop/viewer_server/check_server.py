@@ -54,16 +54,14 @@ class Process:
         self.reader.start()
 
     def _read(self):
-        for line in self.process.stdout:
-            self.lines.append(line)
+        self.lines.extend(self.process.stdout)  # line by line
 
     def wait_for(self, pattern, seconds=20):
         until = time.monotonic() + seconds
         while time.monotonic() < until:
-            for line in list(self.lines):
-                found = re.search(pattern, line)
-                if found:
-                    return found
+            found = next(filter(None, (re.search(pattern, line) for line in list(self.lines))), None)
+            if found:
+                return found
             time.sleep(0.02)
         raise AssertionError(f"'{pattern}' was not printed: {''.join(self.lines)}")
 

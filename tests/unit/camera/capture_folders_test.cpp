@@ -72,8 +72,7 @@ TEST(CaptureFolders, calibration_file_gives_camera_rate_and_unit_of_a_tum_folder
   EXPECT_EQ(source->info().fps, 10);
   EXPECT_EQ(source->info().depth_scale_m, 0.001);
   EXPECT_EQ(make_source(folder.uri("?calibration=orb2.yaml&depth_factor=2000"))->info().depth_scale_m, 0.0005);
-  EXPECT_THAT([&] { make_source(folder.uri("?calibration=none.yaml")); },
-              ThrowsMessage<SourceError>(HasSubstr("none.yaml cannot be read")));
+  EXPECT_TRUE(test::refuses(folder.uri("?calibration=none.yaml"), {"none.yaml cannot be read"}));
 }
 
 TEST(CaptureFolders, stamps_that_are_no_times_are_an_error_and_a_rate_replaces_them) {
@@ -87,8 +86,7 @@ TEST(CaptureFolders, stamps_that_are_no_times_are_an_error_and_a_rate_replaces_t
     pairs += std::string(stamp) + " rgb/" + i + ".png " + stamp + " depths/" + i + ".png\n";
   }
   folder.write("associations.txt", pairs);
-  EXPECT_THAT([&] { make_source(folder.uri(kIntrinsics)); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("4 of 8"), HasSubstr("?fps=30"))));
+  EXPECT_TRUE(test::refuses(folder.uri(kIntrinsics), {"4 of 8", "?fps=30"}));
   const auto frames = test::play(folder.uri(std::string(kIntrinsics) + "&fps=30"));
   ASSERT_THAT(frames, SizeIs(8));
   EXPECT_EQ(frames[7].image.stamp_ns, 233'333'333);
@@ -132,18 +130,15 @@ TEST(CaptureFolders, one_sequence_below_is_taken_and_several_are_listed) {
   EXPECT_THAT(test::play(folder.uri(kIntrinsics)), SizeIs(1));
   folder.color("data/seq-02/rgb/0.png");
   folder.depth("data/seq-02/depth/0.png");
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("holds 2 sequences"), HasSubstr("data/seq-02"))));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"holds 2 sequences", "data/seq-02"}));
 }
 
 TEST(CaptureFolders, says_what_to_do_without_a_calibration_or_a_layout) {
   const DataFolder folder;
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("7-Scenes"), HasSubstr("rgb.txt"), HasSubstr("depth/"))));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"7-Scenes", "rgb.txt", "depth/"}));
   folder.color("rgb/0.png");
   folder.depth("depth/0.png");
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("?intrinsics=fx,fy,cx,cy"), HasSubstr("?calibration=FILE"))));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"?intrinsics=fx,fy,cx,cy", "?calibration=FILE"}));
 }
 
 TEST(CaptureFolders, archives_and_forms_without_a_reader_get_a_sentence) {
@@ -158,7 +153,7 @@ TEST(CaptureFolders, archives_and_forms_without_a_reader_get_a_sentence) {
     const std::string path = (folder.path() / name).string();
     const auto open = [&] { make_source(complete_uri(path)); };
     EXPECT_THAT(open, ThrowsMessage<SourceError>(AllOf(HasSubstr(name), HasSubstr(advice))));
-    EXPECT_THAT([&] { make_source(folder.uri()); }, ThrowsMessage<SourceError>(HasSubstr(advice))) << "a folder of it";
+    EXPECT_TRUE(test::refuses(folder.uri(), {advice})) << "a folder of it";
   }
   EXPECT_EQ(advice_for_file("x.bag"), "");
 }
@@ -209,14 +204,12 @@ TEST_F(FieldData, settings_of_orb_slam_give_the_camera) {
 }
 
 TEST_F(FieldData, settings_beside_the_data_are_named_with_the_source_that_takes_them) {
-  EXPECT_THAT(
-      [&] { make_source(at("orb_slam_settings")); },
-      ThrowsMessage<SourceError>(AllOf(HasSubstr("orb2.yaml (ORB-SLAM2 settings), orb3.yaml (ORB-SLAM3 settings)"),
-                                       HasSubstr("orb_slam_settings?calibration=orb2.yaml'"))));
+  EXPECT_TRUE(test::refuses(at("orb_slam_settings"), {"orb2.yaml (ORB-SLAM2 settings), orb3.yaml (ORB-SLAM3 settings)",
+                                                      "orb_slam_settings?calibration=orb2.yaml'"}));
 }
 
 TEST_F(FieldData, stamps_that_are_durations_need_a_rate) {
-  EXPECT_THAT([&] { make_source(at("stamps_are_durations")); }, ThrowsMessage<SourceError>(HasSubstr("are not times")));
+  EXPECT_TRUE(test::refuses(at("stamps_are_durations"), {"are not times"}));
   EXPECT_THAT(test::play(at("stamps_are_durations?fps=30")), SizeIs(8));
 }
 

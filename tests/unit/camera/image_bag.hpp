@@ -60,6 +60,11 @@ class ImageBag {
   void add_depth(double stamp_s, const cv::Mat& pixels = depth(), const std::string& encoding = "16UC1") {
     add(kDepth, "sensor_msgs/Image", image(pixels, encoding, stamp_s), stamp_s + 0.002);
   }
+  void one_frame(const msg::CameraInfo& info = camera_info()) {
+    add_info(info);
+    add_color(1);
+    add_depth(1);
+  }
   /// Calibration and frames at 1.0, 1.1, 1.2 s, a chunk each.
   void three_frames() {
     add_info();

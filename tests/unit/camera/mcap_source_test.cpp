@@ -21,7 +21,6 @@ using test::play_all;
 using test::Played;
 using test::same;
 using test::SequenceFolder;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -133,10 +132,9 @@ TEST(McapSource, wants_depth_registered_to_colour) {
   file.add("/camera/depth/image_rect_raw", kImage, depth, 1);
   file.add("/camera/color/camera_info", "sensor_msgs/msg/CameraInfo", ImageBag::camera_info(), 1);
   const std::string uri = file.uri();
-  EXPECT_THAT([&] { make_source(uri); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("registered to colour"), HasSubstr("camera_depth_optical"))));
+  EXPECT_TRUE(test::refuses(uri, {"registered to colour", "camera_depth_optical"}));
   const std::string named = uri + "?depth=/camera/depth/image_rect_raw";
-  EXPECT_THAT([&] { make_source(named); }, ThrowsMessage<SourceError>(HasSubstr("?registered=1")));
+  EXPECT_TRUE(test::refuses(named, {"?registered=1"}));
   EXPECT_THAT(play_all(named + "&registered=1").frames, SizeIs(1));
 }
 
@@ -229,16 +227,14 @@ TEST(McapSource, refuses_a_damaged_first_frame) {
   auto frame = own_frame(1, 1, 1);
   frame->intrinsics[0] = 0;
   file.add_own(*frame, 1);
-  EXPECT_THAT([&] { make_source(file.uri()); }, ThrowsMessage<SourceError>(HasSubstr("intrinsics fx 0")));
+  EXPECT_TRUE(test::refuses(file.uri(), {"intrinsics fx 0"}));
 }
 
 TEST(McapSource, refuses_frames_of_a_former_version_and_says_so) {
   McapFile file;
   file.add_own(*own_frame(1, 1, 1), 1, 4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double));
-  EXPECT_THAT([&] { make_source(file.uri()); },
-              ThrowsMessage<SourceError>(
-                  AllOf(HasSubstr(std::to_string(4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double)) + " bytes"),
-                        HasSubstr("another version of RTD-SLAM"))));
+  EXPECT_TRUE(test::refuses(file.uri(), {std::to_string(4 + sizeof(msg::RgbdFrame) - 2 * sizeof(double)) + " bytes",
+                                         "another version of RTD-SLAM"}));
 }
 
 TEST(McapSource, plays_the_intact_part_of_a_cut_file_and_reports_the_loss) {
@@ -256,13 +252,11 @@ TEST(McapSource, plays_the_intact_part_of_a_cut_file_and_reports_the_loss) {
 TEST(McapSource, refuses_other_files_and_files_with_nothing_to_play) {
   const SequenceFolder folder;
   folder.write("x.mcap", "this is no MCAP");
-  EXPECT_THAT([&] { make_source("mcap:" + (folder.path() / "x.mcap").string()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("x.mcap"), HasSubstr("MCAP"))));
-  EXPECT_THAT([] { make_source("mcap:/nowhere.mcap"); }, ThrowsMessage<SourceError>(HasSubstr("/nowhere.mcap")));
+  EXPECT_TRUE(test::refuses("mcap:" + (folder.path() / "x.mcap").string(), {"x.mcap", "MCAP"}));
+  EXPECT_TRUE(test::refuses("mcap:/nowhere.mcap", {"/nowhere.mcap"}));
   McapFile file;
   file.add("/slam/pose", "geometry_msgs/msg/PoseStamped", "cdr", {0, 1, 0, 0}, 1);
-  EXPECT_THAT([&] { make_source(file.uri()); },
-              ThrowsMessage<SourceError>(HasSubstr("/slam/pose (geometry_msgs/PoseStamped, 1 messages)")));
+  EXPECT_TRUE(test::refuses(file.uri(), {"/slam/pose (geometry_msgs/PoseStamped, 1 messages)"}));
 }
 
 TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
@@ -273,7 +267,7 @@ TEST(McapSource, finds_the_file_in_a_folder_of_rosbag2) {
   recordings::export_mcap(*make_source(folder.uri()), bag / "bag_0.mcap", mcap::Compression::kNone, 0);
   EXPECT_THAT(play_all("mcap:" + bag.string()).frames, SizeIs(3));
   std::filesystem::copy_file(bag / "bag_0.mcap", bag / "other.mcap");
-  EXPECT_THAT([&] { make_source("mcap:" + bag.string()); }, ThrowsMessage<SourceError>(HasSubstr("2 recordings of")));
+  EXPECT_TRUE(test::refuses("mcap:" + bag.string(), {"2 recordings of"}));
 }
 
 TEST(McapSource, names_the_topics_that_its_frames_are_not_made_of) {

@@ -30,6 +30,20 @@ inline std::vector<SourceFrame> play(const std::string& uri) {
   return play_all(uri).frames;
 }
 
+/// Whether there is no such source, for a reason in these words.
+inline testing::AssertionResult refuses(const std::string& uri, const std::vector<std::string>& words) {
+  try {
+    make_source(uri);
+  } catch (const SourceError& error) {
+    const std::string text = error.what();
+    for (const std::string& word : words)
+      if (text.find(word) == std::string::npos)
+        return testing::AssertionFailure() << "no '" << word << "' in: " << text;
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure() << "was opened";
+}
+
 /// Of three frames at 1.0, 1.1 and 1.2 s: what is passed over keeps its seq.
 inline void expect_passes_over_two_of_three(const std::string& uri) {
   const auto source = make_source(uri);

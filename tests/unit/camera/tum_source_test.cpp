@@ -19,7 +19,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
 
 Played play(const SequenceFolder& folder, const std::string& parameters = "") {
   return play_all(folder.uri() + parameters);
@@ -175,8 +174,7 @@ TEST(TumSource, refuses_a_sequence_without_one_good_frame) {
   for (const char* stamp : {"1.0", "1.1"}) {
     folder.frame(stamp, cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
   }
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("2 x depth_not_16_bit"), HasSubstr("16-bit"))));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"2 x depth_not_16_bit", "16-bit"}));
 }
 
 TEST(TumSource, refuses_empty_lists) {
@@ -184,7 +182,7 @@ TEST(TumSource, refuses_empty_lists) {
   folder.write("calibration.yaml", SequenceFolder::calibration());
   folder.write("rgb.txt", "# nothing\n");
   folder.write("depth.txt", "");
-  EXPECT_THAT([&] { make_source(folder.uri()); }, ThrowsMessage<SourceError>(HasSubstr("lists are empty")));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"lists are empty"}));
 }
 
 TEST(TumSource, passes_frames_without_any_depth_and_counts_them) {
@@ -216,8 +214,7 @@ TEST(TumSource, refuses_frames_larger_than_the_frame_type) {
   folder.image("rgb/a.png", SequenceFolder::color(1600, 1600));
   folder.image("depth/a.png", SequenceFolder::depth());
   folder.write("associations.txt", "1 rgb/a.png 1 depth/a.png\n");
-  EXPECT_THAT([&] { make_source(folder.uri()); },
-              ThrowsMessage<SourceError>(AllOf(HasSubstr("1600 x 1600"), HasSubstr("at most 1920 x 1200"))));
+  EXPECT_TRUE(test::refuses(folder.uri(), {"1600 x 1600", "at most 1920 x 1200"}));
 }
 
 TEST(TumSource, skips_frames_of_another_size_than_calibrated) {
@@ -279,20 +276,16 @@ TEST(TumSource, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_ot
 }
 
 TEST(MakeSource, names_the_schemes_it_knows) {
-  EXPECT_THAT([] { make_source("folder"); }, ThrowsMessage<SourceError>(HasSubstr("tum:FOLDER")));
-  EXPECT_THAT([] { make_source("rosbag:x"); },
-              ThrowsMessage<SourceError>(
-                  HasSubstr("known: bag, db3, folder, mcap, openni2, realsense-dds, ros2, synthetic, tum")));
+  EXPECT_TRUE(test::refuses("folder", {"tum:FOLDER"}));
+  EXPECT_TRUE(
+      test::refuses("rosbag:x", {"known: bag, db3, folder, mcap, openni2, realsense-dds, ros2, synthetic, tum"}));
   for (const char* video_nodes : {"v4l2:", "v4l2:/dev/video0,/dev/video2?calibration=c.yaml"}) {
     EXPECT_FALSE(is_live(video_nodes));
-    EXPECT_THAT(
-        [&] { make_source(video_nodes); },
-        ThrowsMessage<SourceError>(AllOf(HasSubstr("registered to colour"), HasSubstr("openni2:, realsense-dds:"),
-                                         HasSubstr("ros2:COLOR,DEPTH"))));
+    EXPECT_TRUE(test::refuses(video_nodes, {"registered to colour", "openni2:, realsense-dds:", "ros2:COLOR,DEPTH"}));
   }
-  EXPECT_THAT([] { make_source("tum:"); }, ThrowsMessage<SourceError>(HasSubstr("needs a folder")));
-  EXPECT_THAT([] { make_source("tum:x?mask=1"); }, ThrowsMessage<SourceError>(HasSubstr("unknown parameter 'mask'")));
-  EXPECT_THAT([] { make_source("tum:x?masks"); }, ThrowsMessage<SourceError>(HasSubstr("not key=value")));
+  EXPECT_TRUE(test::refuses("tum:", {"needs a folder"}));
+  EXPECT_TRUE(test::refuses("tum:x?mask=1", {"unknown parameter 'mask'"}));
+  EXPECT_TRUE(test::refuses("tum:x?masks", {"not key=value"}));
 }
 
 }  // namespace

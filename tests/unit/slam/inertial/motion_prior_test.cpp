@@ -14,7 +14,6 @@
 namespace rtd::slam {
 namespace {
 
-using camera::synthetic::CameraMotion;
 using camera::synthetic::CameraPath;
 using camera::synthetic::SyntheticImu;
 using camera::synthetic::SyntheticWheels;
@@ -29,7 +28,7 @@ std::int64_t ns(double t_s) {
 /// A camera with IMU, or wheels, whose poses are measured with noise; its world is that of its first pose, tilted.
 class Drive {
  public:
-  Drive(CameraMotion motion, std::uint64_t seed, bool imu, bool wheels)
+  Drive(camera::synthetic::CameraMotion motion, std::uint64_t seed, bool imu, bool wheels)
       : path_(motion, seed),
         imu_([this](double t_s) { return path_.T_world_camera(t_s); }, SyntheticImu::Options(), seed),
         wheels_([this](double t_s) { return path_.T_world_camera(t_s); }, seed),
@@ -107,7 +106,7 @@ geometry::Vector6d error_of(const PredictedPose& pose, const Eigen::Isometry3d& 
 
 TEST(InertialFilter, finds_biases_and_gravity) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    Drive drive(CameraMotion::kHandHeld, seed, true, false);
+    Drive drive(camera::synthetic::CameraMotion::kHandHeld, seed, true, false);
     drive.track(5);
     ASSERT_TRUE(drive.prior().filter());
     const InertialState& state = drive.prior().filter()->state();
@@ -123,7 +122,7 @@ TEST(InertialFilter, finds_biases_and_gravity) {
 }
 
 TEST(InertialFilter, with_time_distinguishes_tilt_from_bias) {
-  Drive drive(CameraMotion::kRolling, 4, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kRolling, 4, true, false);
   drive.track(30);
   const InertialState& state = drive.prior().filter()->state();
   EXPECT_LT((state.bias.accel_m_s2 - drive.imu().accel_bias_m_s2()).norm(), 0.01) << "m/s2";
@@ -135,7 +134,7 @@ double position_sigma_m(const std::optional<PredictedPose>& pose) {
 }
 
 TEST(InertialFilter, doubts_what_it_has_learnt_the_more_the_longer_no_pose_is_believed) {
-  Drive drive(CameraMotion::kHandHeld, 1, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kHandHeld, 1, true, false);
   drive.track(4);
   const auto at_once = drive.prior().doubted();
   EXPECT_NEAR(position_sigma_m(at_once), position_sigma_m(drive.prior().correct(drive.measured())), 1e-3) << "m";
@@ -155,7 +154,7 @@ TEST(InertialFilter, doubts_what_it_has_learnt_the_more_the_longer_no_pose_is_be
 /// The gyroscope's bias is another than was learnt, and one second later a right pose is believed against it: how far
 /// off half a second without a pose then ends, rad.
 double turned_off_rad(bool doubts) {
-  Drive drive(CameraMotion::kHandHeld, 2, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kHandHeld, 2, true, false);
   drive.track(3);
   drive.add_gyro_bias({0, 0, 0.01});
   for (int i = 0; i < kFps; ++i) drive.expect();
@@ -194,7 +193,7 @@ TEST(MotionPrior, bridges_three_seconds_by_imu_and_knows_how_well) {
   constexpr int kRuns = 20;
   double nees = 0, largest_m = 0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    Drive drive(CameraMotion::kHandHeld, seed, true, false);
+    Drive drive(camera::synthetic::CameraMotion::kHandHeld, seed, true, false);
     drive.track(2.5);
     const Blind blind = go_blind(drive, 3);
     ASSERT_FALSE(std::isnan(blind.nees)) << seed;
@@ -210,7 +209,7 @@ TEST(MotionPrior, bridges_three_seconds_by_wheels_and_knows_how_well) {
   constexpr int kRuns = 20;
   double nees = 0, largest_m = 0;
   for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    Drive drive(CameraMotion::kDriving, seed, false, true);
+    Drive drive(camera::synthetic::CameraMotion::kDriving, seed, false, true);
     drive.track(1);
     const Blind blind = go_blind(drive, 3);
     ASSERT_FALSE(std::isnan(blind.nees)) << seed;
@@ -225,7 +224,7 @@ TEST(MotionPrior, with_imu_and_wheels_is_better_than_with_either) {
   double imu_m = 0, wheels_m = 0, both_m = 0;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     const auto largest_m = [seed](bool imu, bool wheels) {
-      Drive drive(CameraMotion::kDriving, seed, imu, wheels);
+      Drive drive(camera::synthetic::CameraMotion::kDriving, seed, imu, wheels);
       drive.track(2);
       return go_blind(drive, 5).largest_m / 10;
     };
@@ -238,7 +237,7 @@ TEST(MotionPrior, with_imu_and_wheels_is_better_than_with_either) {
 }
 
 TEST(MotionPrior, of_a_camera_at_rest_stays_there) {
-  Drive drive(CameraMotion::kFixed, 5, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kFixed, 5, true, false);
   drive.track(2);
   const auto up = drive.prior().up_in_camera();
   ASSERT_TRUE(up);
@@ -250,14 +249,14 @@ TEST(MotionPrior, of_a_camera_at_rest_stays_there) {
 }
 
 TEST(MotionPrior, expects_nothing_before_the_motion_is_known) {
-  Drive drive(CameraMotion::kHandHeld, 6, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kHandHeld, 6, true, false);
   EXPECT_FALSE(drive.expect());
   drive.measure();
   EXPECT_FALSE(drive.expect()) << "a velocity takes more than one pose";
 }
 
 TEST(MotionPrior, continues_after_a_second_without_imu) {
-  Drive drive(CameraMotion::kHandHeld, 7, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kHandHeld, 7, true, false);
   drive.track(3);
   drive.mute_imu(true);
   for (int i = 0; i < 3; ++i) drive.expect();
@@ -272,7 +271,8 @@ TEST(MotionPrior, continues_after_a_second_without_imu) {
 }
 
 TEST(MotionPrior, goes_with_a_corrected_map) {
-  Drive still(CameraMotion::kHandHeld, 8, true, false), moved(CameraMotion::kHandHeld, 8, true, false);
+  Drive still(camera::synthetic::CameraMotion::kHandHeld, 8, true, false),
+      moved(camera::synthetic::CameraMotion::kHandHeld, 8, true, false);
   still.track(3);
   moved.track(3);
   Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();
@@ -288,7 +288,7 @@ TEST(MotionPrior, goes_with_a_corrected_map) {
 }
 
 TEST(MotionPrior, takes_velocity_and_gravity_along_to_another_place) {
-  Drive drive(CameraMotion::kHandHeld, 9, true, false);
+  Drive drive(camera::synthetic::CameraMotion::kHandHeld, 9, true, false);
   drive.track(4);
   drive.expect();
   const Eigen::Vector3d up_before = *drive.prior().up_in_camera();
