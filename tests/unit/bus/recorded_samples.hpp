@@ -50,6 +50,14 @@ inline RecordedSamples recorded_samples(MessageId id) {
   return {};
 }
 
+inline std::string sha256(const Cdr& bytes) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(bytes.data(), bytes.size(), digest);
+  std::string hash;
+  for (const unsigned char byte : digest) hash += fmt::format("{:02x}", byte);
+  return hash;
+}
+
 /// Serialises the recorded messages of a type with to_cdr(message) and compares the bytes.
 template <class T, class ToCdr>
 void expect_recorded_bytes(ToCdr to_cdr) {
@@ -59,11 +67,7 @@ void expect_recorded_bytes(ToCdr to_cdr) {
     const Cdr cdr = to_cdr(*make_message<T>(number, random));
     all.insert(all.end(), cdr.begin(), cdr.end());
   }
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(all.data(), all.size(), digest);
-  std::string hash;
-  for (const unsigned char byte : digest) hash += fmt::format("{:02x}", byte);
-  EXPECT_EQ(hash, recorded_samples(MessageTraits<T>::kId).hash);
+  EXPECT_EQ(sha256(all), recorded_samples(MessageTraits<T>::kId).hash);
 }
 
 }  // namespace rtd::bus
