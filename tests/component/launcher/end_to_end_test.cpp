@@ -167,6 +167,17 @@ TEST_F(EndToEndTest, images_that_come_twice_count_once) {
   EXPECT_EQ(report()["coverage"], 1.0);
 }
 
+TEST_F(EndToEndTest, a_recording_without_people_hides_what_no_detector_has_seen) {
+  const std::vector<std::string> quick = {"--pace", "lockstep", "--detector", "off", "--blur-people"};
+  EXPECT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=3", quick)), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("--blur-people is for what --record FILE records"));
+  std::vector<std::string> recorded = quick;
+  recorded.insert(recorded.end(), {"--record", scratch_ / "run.mcap"});
+  ASSERT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=3", recorded)), 0) << rtd_.output();
+  EXPECT_THAT(text_of(out_ + "/logs/record.log"),
+              AllOf(HasSubstr("event=people_blurred images=0 hidden="), HasSubstr("event=images_hidden")));
+}
+
 TEST_F(EndToEndTest, a_trace_that_cannot_be_written_is_refused_before_the_run) {
   EXPECT_EQ(rtd_.run(arguments(69, "synthetic:office?frames=5", {"--trace", scratch_ / "none/trace.json"})), 2);
   EXPECT_THAT(rtd_.output(), AllOf(HasSubstr("--trace"), HasSubstr("no such folder")));
