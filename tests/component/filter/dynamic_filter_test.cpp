@@ -23,8 +23,12 @@ DynamicFilter make_filter(FilterMode mode) {
   return DynamicFilter(config, [] { return std::int64_t{0}; });
 }
 
-TEST(DynamicFilter, finds_the_pose_of_a_moving_camera_in_a_static_scene) {
+class DynamicFilterTest : public testing::Test {
+ protected:
   const MovingScene scene;
+};
+
+TEST_F(DynamicFilterTest, finds_the_pose_of_a_moving_camera_in_a_static_scene) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   FilterResult result;
   for (std::uint64_t i = 0; i < 12; ++i) {
@@ -36,8 +40,7 @@ TEST(DynamicFilter, finds_the_pose_of_a_moving_camera_in_a_static_scene) {
   EXPECT_NEAR(result.T_world_camera.translation().y(), 0, 0.006) << "m";
 }
 
-TEST(DynamicFilter, removes_a_mover_without_a_class_and_keeps_the_room) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, removes_a_mover_without_a_class_and_keeps_the_room) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 15; ++i) {
     const double camera_x = kCameraStepM * static_cast<double>(i),
@@ -51,8 +54,7 @@ TEST(DynamicFilter, removes_a_mover_without_a_class_and_keeps_the_room) {
   }
 }
 
-TEST(DynamicFilter, removes_a_mover_at_three_centimetres_per_second) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, removes_a_mover_at_three_centimetres_per_second) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 115; ++i) {
     const double camera_x = 0.003 * static_cast<double>(i), block_x = 0.001 * static_cast<double>(i);
@@ -65,8 +67,7 @@ TEST(DynamicFilter, removes_a_mover_at_three_centimetres_per_second) {
   }
 }
 
-TEST(DynamicFilter, is_not_carried_along_in_the_second_frame) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, is_not_carried_along_in_the_second_frame) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   filter.apply(scene.render(0, 0, -0.1), std::nullopt);
   const FilterResult result = filter.apply(scene.render(1, kCameraStepM, -0.1 + kBlockStepM), std::nullopt);
@@ -78,8 +79,7 @@ TEST(DynamicFilter, is_not_carried_along_in_the_second_frame) {
   }
 }
 
-TEST(DynamicFilter, still_removes_a_mover_that_pauses_for_half_a_second) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, still_removes_a_mover_that_pauses_for_half_a_second) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 25; ++i) {
     const double block_x = -0.25 + kBlockStepM * static_cast<double>(std::min<std::uint64_t>(i, 10));
@@ -89,8 +89,7 @@ TEST(DynamicFilter, still_removes_a_mover_that_pauses_for_half_a_second) {
   }
 }
 
-TEST(DynamicFilter, accepts_a_block_that_was_put_down_for_good) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, accepts_a_block_that_was_put_down_for_good) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   FilterResult result;
   for (std::uint64_t i = 0; i < 110; ++i) {
@@ -100,8 +99,7 @@ TEST(DynamicFilter, accepts_a_block_that_was_put_down_for_good) {
   EXPECT_EQ(result.removed, 0U) << "three seconds later";
 }
 
-TEST(DynamicFilter, removes_a_person_from_the_first_frame_on) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, removes_a_person_from_the_first_frame_on) {
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   const cv::Rect block = MovingScene::block(0, 0);
   const std::vector<vision::Detection> boxes{
@@ -112,8 +110,7 @@ TEST(DynamicFilter, removes_a_person_from_the_first_frame_on) {
   EXPECT_EQ(removed_share(result, block, false), 0.0);
 }
 
-TEST(DynamicFilter, changes_its_mode_while_it_runs_and_starts_again_in_each) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, changes_its_mode_while_it_runs_and_starts_again_in_each) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry), fresh = make_filter(FilterMode::kGeometry);
   const auto frame = [&](std::uint64_t i) {
     return scene.render(i, kCameraStepM * static_cast<double>(i), -0.25 + kBlockStepM * static_cast<double>(i));
@@ -134,16 +131,14 @@ TEST(DynamicFilter, changes_its_mode_while_it_runs_and_starts_again_in_each) {
   EXPECT_GT(result.removed, 0U);
 }
 
-TEST(DynamicFilter, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, ignores_boxes_in_geometry_mode_and_everything_in_mode_off) {
   const std::vector<vision::Detection> boxes{{"person", 0.9F, 0, 0, 640, 480}};
   for (const FilterMode mode : {FilterMode::kGeometry, FilterMode::kOff}) {
     EXPECT_EQ(make_filter(mode).apply(scene.render(0, 0, 0), boxes).removed, 0U);
   }
 }
 
-TEST(DynamicFilter, marks_each_cell_as_moving_static_or_unknown) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, marks_each_cell_as_moving_static_or_unknown) {
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   const cv::Rect block = MovingScene::block(0, 0);
   const std::vector<vision::Detection> boxes{
@@ -160,8 +155,7 @@ TEST(DynamicFilter, marks_each_cell_as_moving_static_or_unknown) {
   EXPECT_TRUE(make_filter(FilterMode::kOff).apply(scene.render(0, 0, 0), boxes).motion.empty());
 }
 
-TEST(DynamicFilter, extracts_more_features_while_something_is_masked) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, extracts_more_features_while_something_is_masked) {
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   const std::vector<vision::Detection> person{{"person", 0.9F, 240, 110, 160, 240}}, none;
   filter.apply(scene.render(0, 0, 0), person);
@@ -171,8 +165,7 @@ TEST(DynamicFilter, extracts_more_features_while_something_is_masked) {
   EXPECT_NEAR(static_cast<double>(with) / static_cast<double>(without), 1.5, 0.05);
 }
 
-TEST(DynamicFilter, makes_no_statement_without_depth) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, makes_no_statement_without_depth) {
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   for (std::uint64_t i = 0; i < 5; ++i) {
     vision::RgbdImage image = scene.render(i, 0, 0.05 * static_cast<double>(i));
@@ -184,8 +177,7 @@ TEST(DynamicFilter, makes_no_statement_without_depth) {
   }
 }
 
-TEST(DynamicFilter, survives_broken_images_between_good_ones) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, survives_broken_images_between_good_ones) {
   DynamicFilter filter = make_filter(FilterMode::kRtd);
   const std::vector<vision::Detection> none;
   for (std::uint64_t i = 0; i < 4; ++i) filter.apply(scene.render(i, 0, kNoBlock), none);
@@ -200,8 +192,7 @@ TEST(DynamicFilter, survives_broken_images_between_good_ones) {
   EXPECT_EQ(result.removed, 0U);
 }
 
-TEST(DynamicFilter, accepts_stamps_that_stand_still_or_go_backwards) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, accepts_stamps_that_stand_still_or_go_backwards) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   for (const std::int64_t stamp_ns : {100, 100, 50, -1'000'000'000, 7'200'000}) {
     vision::RgbdImage image = scene.render(0, 0, 0);
@@ -210,8 +201,7 @@ TEST(DynamicFilter, accepts_stamps_that_stand_still_or_go_backwards) {
   }
 }
 
-TEST(DynamicFilter, follows_slam_into_its_world) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, follows_slam_into_its_world) {
   DynamicFilter filter = make_filter(FilterMode::kGeometry);
   FilterResult result;
   for (std::uint64_t i = 0; i < 6; ++i) result = filter.apply(scene.render(i, 0, 0), std::nullopt);
@@ -224,8 +214,7 @@ TEST(DynamicFilter, follows_slam_into_its_world) {
   EXPECT_EQ(result.removed, 0U);
 }
 
-TEST(DynamicFilter, gives_the_same_bits_for_the_same_input) {
-  const MovingScene scene;
+TEST_F(DynamicFilterTest, gives_the_same_bits_for_the_same_input) {
   DynamicFilter first = make_filter(FilterMode::kGeometry), second = make_filter(FilterMode::kGeometry);
   for (std::uint64_t i = 0; i < 8; ++i) {
     const vision::RgbdImage image =

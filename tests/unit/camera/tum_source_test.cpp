@@ -24,9 +24,13 @@ Played play(const SequenceFolder& folder, const std::string& parameters = "") {
   return play_all(folder.uri() + parameters);
 }
 
-TEST(TumSource, plays_frames_in_order_with_calibration) {
+class TumSourceTest : public testing::Test {
+ protected:
+  void SetUp() override { folder.three_frames(); }
   const SequenceFolder folder;
-  folder.three_frames();
+};
+
+TEST_F(TumSourceTest, plays_frames_in_order_with_calibration) {
   const Played played = play(folder);
   ASSERT_THAT(played.frames, SizeIs(3));
   const vision::RgbdImage& image = played.frames[1].image;
@@ -39,9 +43,7 @@ TEST(TumSource, plays_frames_in_order_with_calibration) {
   EXPECT_THAT(played.skipped, IsEmpty());
 }
 
-TEST(TumSource, frames_say_how_far_their_images_are_apart_and_what_the_calibration_says) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, frames_say_how_far_their_images_are_apart_and_what_the_calibration_says) {
   folder.append("calibration.yaml", "readout_s: 0.02\ndepth_offset_s: 0.001\n");
   folder.write("associations.txt",
                "1.0 rgb/1.0.png 0.987 depth/1.0.png\n1.1 rgb/1.1.png 1.1 depth/1.1.png\n"
@@ -57,24 +59,18 @@ TEST(TumSource, frames_say_how_far_their_images_are_apart_and_what_the_calibrati
   EXPECT_EQ(played.frames[2].image.depth_offset_s, 0) << "farther apart than a frame may say: unknown";
 }
 
-TEST(TumSource, images_of_one_stamp_and_a_plain_calibration_have_no_offset) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, images_of_one_stamp_and_a_plain_calibration_have_no_offset) {
   for (const SourceFrame& frame : play(folder).frames) {
     EXPECT_EQ(frame.image.readout_s, 0);
     EXPECT_EQ(frame.image.depth_offset_s, 0);
   }
 }
 
-TEST(TumSource, passes_over_old_frames_which_keep_their_seq) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, passes_over_old_frames_which_keep_their_seq) {
   test::expect_passes_over_two_of_three(folder.uri());
 }
 
-TEST(TumSource, images_that_only_the_lists_have_are_no_frames_that_were_passed_over) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, images_that_only_the_lists_have_are_no_frames_that_were_passed_over) {
   std::filesystem::remove(folder.path() / "rgb" / "1.1.png");
   const auto source = make_source(folder.uri());
   EXPECT_EQ(source->pass_over(1'150'000'000), 1U) << "as many as next() would have given";
@@ -94,9 +90,7 @@ TEST(TumSource, reads_jpeg_colour) {
   EXPECT_THAT(play(folder).frames, SizeIs(1));
 }
 
-TEST(TumSource, reads_masks_on_request) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, reads_masks_on_request) {
   std::filesystem::create_directories(folder.path() / "mask");
   cv::Mat mask(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(0));
   mask.at<std::uint8_t>(5, 6) = 1;
@@ -108,9 +102,7 @@ TEST(TumSource, reads_masks_on_request) {
   EXPECT_TRUE(play(folder).frames[0].dynamic_mask.empty());
 }
 
-TEST(TumSource, skips_missing_and_truncated_images_and_continues) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, skips_missing_and_truncated_images_and_continues) {
   for (const char* stamp : {"1.3", "1.4", "1.5", "1.6"}) folder.frame(stamp);
   std::filesystem::remove(folder.path() / "rgb/1.1.png");
   folder.truncate("rgb/1.2.png");
@@ -127,9 +119,7 @@ TEST(TumSource, skips_missing_and_truncated_images_and_continues) {
   EXPECT_THAT(played.skipped[1].detail, HasSubstr("truncated"));
 }
 
-TEST(TumSource, skips_truncated_jpeg_instead_of_grey_filling) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, skips_truncated_jpeg_instead_of_grey_filling) {
   folder.image("rgb/b.jpg", SequenceFolder::color());
   folder.truncate("rgb/b.jpg");
   folder.write("associations.txt", "1.0 rgb/1.0.png 1.0 depth/1.0.png\n1.1 rgb/b.jpg 1.1 depth/1.1.png\n");
@@ -138,9 +128,7 @@ TEST(TumSource, skips_truncated_jpeg_instead_of_grey_filling) {
   EXPECT_EQ(played.counters.of(SkipReason::kColorUnreadable), 1U);
 }
 
-TEST(TumSource, names_the_pixel_type_of_depth_that_is_not_16_bit) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, names_the_pixel_type_of_depth_that_is_not_16_bit) {
   folder.image("depth/1.1.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_8UC1, cv::Scalar(9)));
   folder.image("depth/c.png", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_16UC3, cv::Scalar(9, 9, 9)));
   folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
@@ -152,9 +140,7 @@ TEST(TumSource, names_the_pixel_type_of_depth_that_is_not_16_bit) {
   EXPECT_THAT(played.skipped[1].detail, HasSubstr("16-bit, 3 channels"));
 }
 
-TEST(TumSource, names_the_formats_it_reads) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, names_the_formats_it_reads) {
   folder.image("depth/f.tiff", cv::Mat(SequenceFolder::kHeight, SequenceFolder::kWidth, CV_32FC1, cv::Scalar(1.5)));
   folder.append("rgb.txt", "1.3 rgb/1.0.png\n");
   folder.append("depth.txt", "1.3 depth/f.tiff\n");
@@ -185,9 +171,7 @@ TEST(TumSource, refuses_empty_lists) {
   EXPECT_TRUE(test::refuses(folder.uri(), {"lists are empty"}));
 }
 
-TEST(TumSource, passes_frames_without_any_depth_and_counts_them) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, passes_frames_without_any_depth_and_counts_them) {
   folder.frame("1.3", SequenceFolder::depth(0));
   const Played played = play(folder);
   ASSERT_THAT(played.frames, SizeIs(4));
@@ -196,9 +180,7 @@ TEST(TumSource, passes_frames_without_any_depth_and_counts_them) {
   EXPECT_EQ(played.counters.frames_without_depth, 1U);
 }
 
-TEST(TumSource, treats_saturated_depth_as_missing) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, treats_saturated_depth_as_missing) {
   cv::Mat depth = SequenceFolder::depth();
   depth.at<std::uint16_t>(3, 4) = 65535;
   depth.at<std::uint16_t>(3, 5) = 65534;
@@ -217,18 +199,14 @@ TEST(TumSource, refuses_frames_larger_than_the_frame_type) {
   EXPECT_TRUE(test::refuses(folder.uri(), {"1600 x 1600", "at most 1920 x 1200"}));
 }
 
-TEST(TumSource, skips_frames_of_another_size_than_calibrated) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, skips_frames_of_another_size_than_calibrated) {
   folder.image("rgb/1.1.png", SequenceFolder::color(32, 32));
   const Played played = play(folder);
   EXPECT_THAT(played.frames, SizeIs(2));
   EXPECT_EQ(played.counters.of(SkipReason::kSizeMismatch), 1U);
 }
 
-TEST(TumSource, gives_groundtruth_of_its_span_only) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, gives_groundtruth_of_its_span_only) {
   folder.write("groundtruth.txt", "0.4 0 0 0 0 0 0 1\n0.6 1 0 0 0 0 0 1\n1.6 2 0 0 0 0 0 1\n1.8 3 0 0 0 0 0 1\n");
   const auto poses = make_source(folder.uri())->groundtruth();
   ASSERT_THAT(poses, SizeIs(2));
@@ -236,9 +214,7 @@ TEST(TumSource, gives_groundtruth_of_its_span_only) {
   EXPECT_EQ(poses[1].T_world_body.translation().x(), 2);
 }
 
-TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, knows_the_true_pose_between_two_that_are_near) {
   folder.write("groundtruth.txt", "1.00 1 0 0 0 0 0 1\n1.02 3 0 0 0 0 0 1\n1.2 9 0 0 0 0 0 1\n");
   const auto source = make_source(folder.uri());
   EXPECT_NEAR(source->true_pose(1'005'000'000).value().translation().x(), 1.5, 1e-9);
@@ -247,9 +223,7 @@ TEST(TumSource, knows_the_true_pose_between_two_that_are_near) {
   EXPECT_FALSE(source->true_pose(900'000'000));
 }
 
-TEST(TumSource, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
   folder.write("groundtruth.txt", "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 nan 0 0 0 0 0 1\n");
   auto source = make_source(folder.uri());
   EXPECT_THAT(source->groundtruth(), SizeIs(1));
@@ -263,9 +237,7 @@ TEST(TumSource, plays_whatever_the_groundtruth_is_and_says_what_is_not_used) {
   EXPECT_THAT(make_source(folder.uri())->info().remarks, ElementsAre(HasSubstr("no pose at the time of the frames")));
 }
 
-TEST(TumSource, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_others) {
-  const SequenceFolder folder;
-  folder.three_frames();
+TEST_F(TumSourceTest, plays_with_the_good_rows_of_broken_groundtruth_and_counts_the_others) {
   folder.write("groundtruth.txt",
                "timestamp tx ty tz qx qy qz qw\n1.0 0 0 0 0 0 0 1\n1.1 0 0 broken 0 0 0 1\n1.2 1 0 0 0 0 0 1\n");
   const auto source = make_source(folder.uri());

@@ -72,9 +72,13 @@ std::pair<int, int> wall_ends(const NavigationGrid& grid) {
   return ends;
 }
 
-TEST(NavigationMap, has_the_wall_and_the_free_way_to_it) {
+class NavigationMapTest : public testing::Test {
+ protected:
   WallScene scene;
   Maps maps;
+};
+
+TEST_F(NavigationMapTest, has_the_wall_and_the_free_way_to_it) {
   for (int i = 0; i < 4; ++i) maps.integrate(scene.render({}, 3.025));
   const NavigationGrid grid = maps.grid();
   EXPECT_EQ(at(grid, 0.3, WallScene::kWallM), NavigationGrid::kOccupied);
@@ -88,9 +92,7 @@ TEST(NavigationMap, has_the_wall_and_the_free_way_to_it) {
       << "one cell thick";
 }
 
-TEST(NavigationMap, readings_on_what_moves_clear_what_is_before_it_and_nothing_behind) {
-  WallScene scene;
-  Maps maps;
+TEST_F(NavigationMapTest, readings_on_what_moves_clear_what_is_before_it_and_nothing_behind) {
   for (int i = 0; i < 4; ++i) maps.integrate(scene.render(kBlock), WallScene::mask(kBlock));
   const NavigationGrid grid = maps.grid();
   EXPECT_EQ(at(grid, 0, 1.0), NavigationGrid::kFree);
@@ -99,9 +101,7 @@ TEST(NavigationMap, readings_on_what_moves_clear_what_is_before_it_and_nothing_b
   EXPECT_EQ(at(grid, 0.9, 2.5), NavigationGrid::kFree) << "beside the person";
 }
 
-TEST(NavigationMap, a_person_that_no_mask_named_leaves_nothing_once_seen_through) {
-  WallScene scene;
-  Maps maps;
+TEST_F(NavigationMapTest, a_person_that_no_mask_named_leaves_nothing_once_seen_through) {
   for (int i = 0; i < 6; ++i) maps.integrate(scene.render(kBlock));
   EXPECT_EQ(at(maps.grid(), 0, WallScene::kBlockM), NavigationGrid::kOccupied);
   for (int i = 1; i <= 12; ++i) {  // a known view is renewed once a second
@@ -152,9 +152,7 @@ TEST(NavigationMap, follows_a_correction_in_small_steps_and_ignores_small_ones) 
   EXPECT_EQ(maps.navigation.space().moved_scans(), 12U);
 }
 
-TEST(NavigationMap, keeps_few_images_of_a_view_that_does_not_change) {
-  WallScene scene;
-  Maps maps;
+TEST_F(NavigationMapTest, keeps_few_images_of_a_view_that_does_not_change) {
   for (int i = 0; i < 60; ++i) maps.navigation.integrate(scene.render(), at_origin());
   EXPECT_EQ(maps.navigation.space().scans(), 2U);
 }
@@ -179,9 +177,7 @@ TEST(NavigationMap, stays_within_its_memory_and_says_so) {
   EXPECT_EQ(few_scans.navigation.space().scans(), 10U);
 }
 
-TEST(NavigationMap, begins_again_when_it_is_cleared) {
-  WallScene scene;
-  Maps maps;
+TEST_F(NavigationMapTest, begins_again_when_it_is_cleared) {
   for (int i = 0; i < 3; ++i) maps.integrate(scene.render());
   maps.navigation.clear();
   maps.occupied.clear();
@@ -189,9 +185,7 @@ TEST(NavigationMap, begins_again_when_it_is_cleared) {
   EXPECT_TRUE(free_cells(maps.navigation).empty());
 }
 
-TEST(NavigationMap, takes_depth_of_nothing_and_refuses_an_up_without_direction) {
-  WallScene scene;
-  Maps maps;
+TEST_F(NavigationMapTest, takes_depth_of_nothing_and_refuses_an_up_without_direction) {
   vision::RgbdImage image = scene.render();
   image.depth.setTo(0);
   for (int i = 0; i < 3; ++i) maps.integrate(image);

@@ -25,9 +25,13 @@ std::size_t ghosts(StaticMap& map) {
       std::count_if(cloud.begin(), cloud.end(), [](const CloudPoint& point) { return point.p_world.z() < 2.2F; }));
 }
 
-TEST(StaticMap, fuses_a_noisy_wall_to_less_than_the_noise) {
+class StaticMapTest : public testing::Test {
+ protected:
   WallScene scene;
-  StaticMap map(WallScene::config());
+  StaticMap map{WallScene::config()};
+};
+
+TEST_F(StaticMapTest, fuses_a_noisy_wall_to_less_than_the_noise) {
   for (int i = 0; i < 30; ++i)
     ASSERT_EQ(map.integrate(scene.render(), all_static(), at_origin()).outcome, Outcome::kFused);
   double error_m = 0, weight = 0;
@@ -39,9 +43,7 @@ TEST(StaticMap, fuses_a_noisy_wall_to_less_than_the_noise) {
   EXPECT_LT(error_m / weight, 0.4 * noise_m) << "m; one reading: " << 0.8 * noise_m;
 }
 
-TEST(StaticMap, leaves_out_a_person_under_the_mask_from_the_first_frame_on) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, leaves_out_a_person_under_the_mask_from_the_first_frame_on) {
   for (int i = 0; i < 10; ++i) {
     const FusionReport report = map.integrate(scene.render(kPerson), WallScene::mask(kPerson), at_origin());
     EXPECT_GT(report.masked, 1000U);
@@ -61,9 +63,7 @@ TEST(StaticMap, has_a_ghost_of_a_person_without_mask_until_it_is_seen_through) {
   EXPECT_LT(ghosts(map), 10U) << "after " << needed << " frames";
 }
 
-TEST(StaticMap, carves_at_pixels_of_moving_objects_too) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, carves_at_pixels_of_moving_objects_too) {
   for (int i = 0; i < 5; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
   const DynamicMask all_dynamic{1, 1, {DynamicMask::kDynamic}};
   for (int i = 0; i < 8; ++i) map.integrate(scene.render(kNoPerson), all_dynamic, at_origin());
@@ -101,9 +101,7 @@ TEST(StaticMap, stays_within_its_memory_and_counts_what_it_refused) {
   EXPECT_GT(report.refused, 1000U);
 }
 
-TEST(StaticMap, refuses_poses_and_images_that_make_no_sense) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, refuses_poses_and_images_that_make_no_sense) {
   Eigen::Isometry3d no_pose = at_origin();
   no_pose.translation().y() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(map.integrate(scene.render(), all_static(), no_pose).outcome, Outcome::kBadPose);
@@ -114,9 +112,7 @@ TEST(StaticMap, refuses_poses_and_images_that_make_no_sense) {
   EXPECT_EQ(map.voxels(), 0U);
 }
 
-TEST(StaticMap, takes_depth_of_nothing_and_of_everything) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, takes_depth_of_nothing_and_of_everything) {
   for (const int raw : {0, 1, 65535}) {
     vision::RgbdImage image = scene.render();
     image.depth.setTo(raw);
@@ -126,9 +122,7 @@ TEST(StaticMap, takes_depth_of_nothing_and_of_everything) {
   }
 }
 
-TEST(StaticMap, follows_another_calibration_and_image_size) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, follows_another_calibration_and_image_size) {
   map.integrate(scene.render(), all_static(), at_origin());
   vision::RgbdImage half = scene.render();
   cv::Mat depth(60, 80, CV_16UC1, cv::Scalar(15000)), color(60, 80, CV_8UC3, cv::Scalar(1, 2, 3));
@@ -140,12 +134,10 @@ TEST(StaticMap, follows_another_calibration_and_image_size) {
   EXPECT_GT(report.fused, 3000U);
 }
 
-TEST(StaticMap, moves_with_the_keyframes_that_slam_corrects) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, moves_with_the_keyframes_that_slam_corrects) {
   map.update(keyframe(0, 0));
   for (int i = 0; i < 3; ++i) map.integrate(scene.render(kPerson), all_static(), at_origin());
-  const auto left_edge_m = [&map] {
+  const auto left_edge_m = [this] {
     float left_m = 100;
     for (const CloudPoint& point : map.cloud()) {
       if (point.p_world.z() < 2.2F) left_m = std::min(left_m, point.p_world.x());
@@ -161,9 +153,7 @@ TEST(StaticMap, moves_with_the_keyframes_that_slam_corrects) {
   EXPECT_NEAR(left_edge_m(), before_m + 0.75F, 0.03) << "m";
 }
 
-TEST(StaticMap, gives_no_more_points_than_requested) {
-  WallScene scene;
-  StaticMap map(WallScene::config());
+TEST_F(StaticMapTest, gives_no_more_points_than_requested) {
   for (int i = 0; i < 3; ++i) map.integrate(scene.render(), all_static(), at_origin());
   const std::size_t all = map.cloud().size();
   const auto few = map.cloud(500);

@@ -62,9 +62,13 @@ TEST(Integrity, of_perfect_poses_in_another_world_has_no_fault) {
   EXPECT_EQ(integrity.nees_frames, 55U);
 }
 
-TEST(Integrity, counts_frames_within_a_second_of_a_step_beyond_five_centimetres) {
+class IntegrityTest : public testing::Test {
+ protected:
   const Trajectory truth = walk();
   std::vector<PublishedPose> published = perfect(truth, some_transform());
+};
+
+TEST_F(IntegrityTest, counts_frames_within_a_second_of_a_step_beyond_five_centimetres) {
   shift(published, 30, 0.0501);
   EXPECT_EQ(judge_integrity(published, truth).dangerous, 20U);  // 20 Hz: after a second both poses have the shift
   shift(published, 30, -0.0002);
@@ -80,9 +84,7 @@ TEST(Integrity, counts_frames_within_a_second_of_a_turn_beyond_three_degrees) {
   EXPECT_EQ(judge_integrity(published, truth, {.max_error_m = 1}).dangerous, 0U);
 }
 
-TEST(Integrity, a_wrong_pose_that_is_not_ok_is_no_danger) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, a_wrong_pose_that_is_not_ok_is_no_danger) {
   shift(published, 30, 0.07);
   set_state(published, 30, 50, TrackingState::kDoubtful);
   const Integrity integrity = judge_integrity(published, truth);
@@ -91,9 +93,7 @@ TEST(Integrity, a_wrong_pose_that_is_not_ok_is_no_danger) {
   EXPECT_EQ(integrity.episodes, 1U);
 }
 
-TEST(Integrity, a_pose_that_returns_from_doubt_to_its_place_is_named_so) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, a_pose_that_returns_from_doubt_to_its_place_is_named_so) {
   shift(published, 20, 0.2);
   shift(published, 30, -0.2);
   set_state(published, 20, 30, TrackingState::kDoubtful);
@@ -102,9 +102,7 @@ TEST(Integrity, a_pose_that_returns_from_doubt_to_its_place_is_named_so) {
   EXPECT_EQ(integrity.returning, 10U);
 }
 
-TEST(Integrity, the_wait_of_a_start_is_no_needless_doubt) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, the_wait_of_a_start_is_no_needless_doubt) {
   set_state(published, 0, 20, TrackingState::kDoubtful);
   set_state(published, 40, 41, TrackingState::kDoubtful);
   const Integrity integrity = judge_integrity(published, truth);
@@ -112,9 +110,7 @@ TEST(Integrity, the_wait_of_a_start_is_no_needless_doubt) {
   EXPECT_EQ(integrity.needless, 1U);
 }
 
-TEST(Integrity, doubt_is_needless_where_the_error_is_below_a_centimetre) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, doubt_is_needless_where_the_error_is_below_a_centimetre) {
   set_state(published, 40, 43, TrackingState::kDoubtful);
   Integrity integrity = judge_integrity(published, truth);
   EXPECT_EQ(integrity.needless, 3U);
@@ -125,9 +121,7 @@ TEST(Integrity, doubt_is_needless_where_the_error_is_below_a_centimetre) {
   EXPECT_EQ(integrity.good, 39U);
 }
 
-TEST(Integrity, delay_is_the_time_from_the_error_to_the_doubt) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, delay_is_the_time_from_the_error_to_the_doubt) {
   shift(published, 20, 0.06);
   set_state(published, 26, 45, TrackingState::kDoubtful);
   const Integrity integrity = judge_integrity(published, truth);
@@ -136,9 +130,7 @@ TEST(Integrity, delay_is_the_time_from_the_error_to_the_doubt) {
   EXPECT_EQ(integrity.dangerous, 6U);
 }
 
-TEST(Integrity, delay_of_an_error_that_is_never_doubted_is_its_length) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, delay_of_an_error_that_is_never_doubted_is_its_length) {
   shift(published, 20, 0.06);
   const Integrity integrity = judge_integrity(published, truth);
   EXPECT_EQ(integrity.episodes, 1U);
@@ -146,18 +138,14 @@ TEST(Integrity, delay_of_an_error_that_is_never_doubted_is_its_length) {
   EXPECT_NEAR(integrity.delay_s_max, 1, 1e-9);
 }
 
-TEST(Integrity, an_error_at_the_last_frame_ends_with_the_run) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, an_error_at_the_last_frame_ends_with_the_run) {
   shift(published, 59, 0.06);
   const Integrity integrity = judge_integrity(published, truth);
   EXPECT_EQ(integrity.unnoticed, 1U);
   EXPECT_EQ(integrity.delay_s_max, 0);
 }
 
-TEST(Integrity, a_wrong_place_after_a_long_loss_is_compared_with_the_last_pose_before) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, a_wrong_place_after_a_long_loss_is_compared_with_the_last_pose_before) {
   set_state(published, 10, 50, TrackingState::kLost);
   shift(published, 50, 0.5);
   const auto errors = errors_over_span(published, truth, 1);
@@ -168,9 +156,7 @@ TEST(Integrity, a_wrong_place_after_a_long_loss_is_compared_with_the_last_pose_b
   EXPECT_EQ(judge_integrity(published, truth).dangerous, 10U);
 }
 
-TEST(Integrity, poses_of_another_map_are_not_compared) {
-  const Trajectory truth = walk();
-  std::vector<PublishedPose> published = perfect(truth, some_transform());
+TEST_F(IntegrityTest, poses_of_another_map_are_not_compared) {
   for (std::size_t i = 30; i < published.size(); ++i) {
     published[i].T_world_camera = some_transform() * published[i].T_world_camera;
     published[i].map_id = 1;

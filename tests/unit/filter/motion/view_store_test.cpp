@@ -60,8 +60,12 @@ TEST(ViewStore, stamps_at_the_ends_of_time_are_very_old_or_far_ahead) {
   EXPECT_NEAR(store.predict_pose(kMax).translation().x(), 0.01, 1e-9) << "at rest after a long gap";
 }
 
-TEST(ViewStore, predicts_by_the_stamps_of_the_frames) {
+class ViewStoreTest : public testing::Test {
+ protected:
   ViewStore store;
+};
+
+TEST_F(ViewStoreTest, predicts_by_the_stamps_of_the_frames) {
   store.add(view(0));
   EXPECT_NEAR(store.predict_pose(stamp(3)).translation().x(), 0, 1e-9) << "one view, no velocity";
   store.add(view(1, 0.01));
@@ -70,22 +74,19 @@ TEST(ViewStore, predicts_by_the_stamps_of_the_frames) {
   EXPECT_NEAR(store.predict_pose(stamp(100)).translation().x(), 0.01, 1e-9) << "after a long gap";
 }
 
-TEST(ViewStore, keeps_a_view_from_longer_ago_than_the_recent_ones) {
-  ViewStore store;
+TEST_F(ViewStoreTest, keeps_a_view_from_longer_ago_than_the_recent_ones) {
   for (std::uint64_t seq = 0; seq < 120; ++seq) store.add(view(seq));
   EXPECT_NEAR(1e-9 * static_cast<double>(stamp(120) - store.long_ago(stamp(120), 1'500'000'000).stamp_ns), 1.5, 0.15);
   EXPECT_EQ(store.long_ago(stamp(120), 500'000'000).seq, 105U);
 }
 
-TEST(ViewStore, forgets_what_is_long_ago_when_slam_starts_a_new_map) {
-  ViewStore store;
+TEST_F(ViewStoreTest, forgets_what_is_long_ago_when_slam_starts_a_new_map) {
   for (std::uint64_t seq = 0; seq < 120; ++seq) store.add(view(seq));
   EXPECT_FALSE(store.correct(110, at(1.0)));
   EXPECT_EQ(store.long_ago(stamp(120), 3'000'000'000).seq, 110U);
 }
 
-TEST(ViewStore, lets_later_views_follow_a_correction) {
-  ViewStore store;
+TEST_F(ViewStoreTest, lets_later_views_follow_a_correction) {
   for (std::uint64_t seq = 0; seq < 4; ++seq) store.add(view(seq, 0.1 * static_cast<double>(seq)));
   EXPECT_TRUE(store.correct(1, at(0.15)));
   EXPECT_NEAR(store.newest().T_world_camera.translation().x(), 0.35, 1e-9) << "m";
@@ -93,8 +94,7 @@ TEST(ViewStore, lets_later_views_follow_a_correction) {
   EXPECT_NEAR(store.second_newest()->T_world_camera.translation().x(), 0.25, 1e-9) << "m: earlier ones stay";
 }
 
-TEST(ViewStore, drops_what_lies_in_another_world) {
-  ViewStore store;
+TEST_F(ViewStoreTest, drops_what_lies_in_another_world) {
   for (std::uint64_t seq = 0; seq < 10; ++seq) store.add(view(seq));
   store.mark_keyframe(2, at(0));
   EXPECT_FALSE(store.correct(7, at(5.0))) << "slam has started a new map";
@@ -102,8 +102,7 @@ TEST(ViewStore, drops_what_lies_in_another_world) {
   EXPECT_NEAR(store.newest().T_world_camera.translation().x(), 5.0, 1e-9) << "m";
 }
 
-TEST(ViewStore, forgets_what_lies_before_a_frame) {
-  ViewStore store;
+TEST_F(ViewStoreTest, forgets_what_lies_before_a_frame) {
   for (std::uint64_t seq = 0; seq < 10; ++seq) store.add(view(seq));
   store.mark_keyframe(2, at(0));
   store.forget_before(6);
@@ -112,8 +111,7 @@ TEST(ViewStore, forgets_what_lies_before_a_frame) {
   EXPECT_EQ(store.size(), 1U) << "the newest view stays";
 }
 
-TEST(ViewStore, ignores_frames_that_it_does_not_have) {
-  ViewStore store;
+TEST_F(ViewStoreTest, ignores_frames_that_it_does_not_have) {
   EXPECT_TRUE(store.correct(3, at(1)));
   store.mark_keyframe(3, at(1));
   store.forget_keyframe(3);
@@ -121,16 +119,14 @@ TEST(ViewStore, ignores_frames_that_it_does_not_have) {
   EXPECT_TRUE(store.references(0, at(0), {6}).empty());
 }
 
-TEST(ViewStore, chooses_references_of_graded_ages) {
-  ViewStore store;
+TEST_F(ViewStoreTest, chooses_references_of_graded_ages) {
   for (std::uint64_t seq = 0; seq < 32; ++seq) store.add(view(seq));
   std::vector<std::uint64_t> seqs;
   for (const View* reference : store.references(stamp(32), at(0), {6})) seqs.push_back(reference->seq);
   EXPECT_THAT(seqs, testing::ElementsAre(29, 24, 15, 2)) << "0.1, 0.27, 0.55 and 1 s ago at 33 ms";
 }
 
-TEST(ViewStore, adds_keyframes_that_look_the_same_way_from_near) {
-  ViewStore store;
+TEST_F(ViewStoreTest, adds_keyframes_that_look_the_same_way_from_near) {
   for (std::uint64_t seq = 0; seq < 60; ++seq) {
     store.add(view(seq));
     if (seq == 3) store.mark_keyframe(3, at(0.2));
@@ -144,8 +140,7 @@ TEST(ViewStore, adds_keyframes_that_look_the_same_way_from_near) {
   EXPECT_EQ(store.references(stamp(60), at(0), {6}).size(), 4U);
 }
 
-TEST(ViewStore, uses_no_keyframe_beyond_the_largest_baseline) {
-  ViewStore store;
+TEST_F(ViewStoreTest, uses_no_keyframe_beyond_the_largest_baseline) {
   for (std::uint64_t seq = 0; seq < 60; ++seq) {
     store.add(view(seq));
     if (seq == 3) store.mark_keyframe(3, at(0.5));
@@ -156,8 +151,7 @@ TEST(ViewStore, uses_no_keyframe_beyond_the_largest_baseline) {
   }
 }
 
-TEST(ViewStore, prefers_settled_views) {
-  ViewStore store;
+TEST_F(ViewStoreTest, prefers_settled_views) {
   store.add(view(0));
   for (std::uint64_t seq = 1; seq < 3; ++seq) {
     store.add(view(seq));
@@ -168,8 +162,7 @@ TEST(ViewStore, prefers_settled_views) {
   EXPECT_EQ(store.of_age(stamp(4), kPeriodNs).seq, 2U);
 }
 
-TEST(ViewStore, views_move_along_when_slam_corrects_its_map) {
-  ViewStore store;
+TEST_F(ViewStoreTest, views_move_along_when_slam_corrects_its_map) {
   for (std::uint64_t seq = 0; seq < 20; ++seq) store.add(view(seq, 0.1 * static_cast<double>(seq)));
   for (const std::uint64_t seq : {3U, 12U}) {
     store.mark_keyframe(seq, at(0.1 * static_cast<double>(seq)));
