@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/detector/core/engine.hpp"
+#include "services/detector/core/detector.hpp"
 #include "services/evaluation/core/detection/average_precision.hpp"
 #include "services/evaluation/core/detection/mask_recall.hpp"
 #include "services/evaluation/detector/model_under_test.hpp"

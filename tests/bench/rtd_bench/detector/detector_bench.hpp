@@ -10,7 +10,6 @@
 
 #include "services/detector/core/detector.hpp"
 #include "services/detector/core/detector_config.hpp"
-#include "services/detector/core/engine.hpp"
 #include "services/detector/core/onnx_file.hpp"
 #include "tests/bench/rtd_bench/detector/fleet_bench.hpp"
 

@@ -14,7 +14,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/detector/core/engine.hpp"
+#include "services/detector/core/detector.hpp"
 
 namespace rtd::bench {
 namespace {
