@@ -42,9 +42,9 @@ struct FieldRule {
   bool free = false;  ///< any value at all
 };
 
-constexpr FieldRule free_field(std::string_view field) {
+constexpr FieldRule free_field(std::string_view field, std::size_t most_count = 0) {
   constexpr double kAny = std::numeric_limits<double>::infinity();
-  return {.field = field, .least = -kAny, .most = kAny, .free = true};
+  return {.field = field, .least = -kAny, .most = kAny, .most_count = most_count, .free = true};
 }
 constexpr FieldRule between(std::string_view field, double least, double most) {
   return {.field = field, .least = least, .most = most};
@@ -194,7 +194,7 @@ inline constexpr FieldRule kFieldRules[] = {
     within("rtd_msgs/KeyframeFeatures.readout_s", 0.1),
     at_most("rtd_msgs/KeyframeFeatures.features", kMaxFeatures),
     free_field("rtd_msgs/KeyframeRequest.keyframe_ids"),
-    at_most("rtd_msgs/Submap.file", std::size_t{4} << 20),
+    free_field("rtd_msgs/Submap.file", std::size_t{4} << 20),
     between("rtd_msgs/AtlasState.corrections", 0, kMaxSequence),
     at_most("rtd_msgs/AtlasState.robots", 256),
     text_field("rtd_msgs/AtlasRobot.name", TextRule::kToken, 32),

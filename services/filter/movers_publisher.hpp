@@ -53,7 +53,7 @@ class MoversPublisher {
   std::deque<Waiting> waiting_;  ///< by seq
   WorldMovers movers_;
   geometry::MoverTrails trails_;  ///< of the markers
-  std::uint32_t map_ = 0;  ///< that the last tracked frame was in
+  std::uint32_t map_ = 0;         ///< that the last tracked frame was in
 };
 
 }  // namespace rtd::filter

@@ -203,10 +203,8 @@ TEST_F(record_builder, names_the_services_that_report_and_have_not_finished) {
       << "the detector of another host is expected";
 }
 
-TEST(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
+TEST_F(record_builder, tolerates_a_replay_that_plays_no_topic_of_a_run) {
   const Tolerated live{.harmless_replay = true}, at_first{.harmless_replay = true, .silent_replay = true};
-  FrameList store;
-  RecordBuilder builder(store);
   builder.add(status_of("replay", 7, {}));
   EXPECT_EQ(builder.active_services(at_first), "") << "it may still report what it plays";
   EXPECT_EQ(builder.active_services(live), "replay (pid 7)");

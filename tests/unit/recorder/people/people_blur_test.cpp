@@ -6,8 +6,8 @@
 
 #include <set>
 
-#include "common/vision/image_codecs.hpp"
 #include "common/vision/detection.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/recorder/people/blur_line.hpp"
 #include "tests/support/people_messages.hpp"
 
