@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/test_domain.hpp"
 #include "tests/support/time_bounds.hpp"
 
 namespace rtd::launcher {
@@ -37,13 +40,14 @@ class SupervisedRunTest : public testing::Test {
                                     "--out",
                                     scratch_ / "out",
                                     "--dds",
-                                    "inprocess",
+                                    "cyclonedds",
                                     "--filter",
                                     "geometry",
                                     "--set",
                                     "launcher.connect_timeout_ms=0",
                                     "--set",
                                     "launcher.domain_check_ms=0"};
+    if (std::ranges::count(more, "--domain") == 0) all.insert(all.end(), {"--domain", std::to_string(test_domain())});
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -59,7 +63,7 @@ TEST_F(SupervisedRunTest, gives_every_service_its_arguments_and_a_log) {
   script("camera", "echo \"$@\"; sleep 0.3");
   rtd_.run(arguments({"--pace", "lockstep", "--domain", "7", "--frames", "3", "--set", "slam.x=1"}));
   EXPECT_THAT(log("filter"),
-              AllOf(HasSubstr("--pace lockstep"), HasSubstr("--dds=inprocess --domain=7"), HasSubstr("--set slam.x=1"),
+              AllOf(HasSubstr("--pace lockstep"), HasSubstr("--dds=cyclonedds --domain=7"), HasSubstr("--set slam.x=1"),
                     HasSubstr("--filter=geometry --set filter.detector=off")));
   EXPECT_THAT(log("slam"), HasSubstr("--out " + (scratch_ / "out")));
   EXPECT_THAT(log("camera"), AllOf(HasSubstr("--source synthetic:office?frames=5"), HasSubstr("--frames 3"),
