@@ -120,30 +120,6 @@ const Atlas::Announced* Atlas::newest_known(const Robot& robot) const {
   return nullptr;
 }
 
-/// Where the robot's map lies in a world, by its newest keyframes there: each of them alone is less certain.
-Eigen::Isometry3d Atlas::fit_map(const Robot& robot, MapId world) const {
-  constexpr int kKeyframes = 10;
-  std::vector<std::pair<const Eigen::Isometry3d*, const Eigen::Isometry3d*>> poses;  // here, of the robot
-  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
-    const Keyframe* keyframe = map_.find_keyframe(announced.keyframe);
-    if (keyframe == nullptr || worlds_.at(keyframe->map) != world) continue;
-    poses.emplace_back(&keyframe->T_world_camera, &announced.T_robot_camera);
-    if (poses.size() == kKeyframes) break;
-  }
-  const Eigen::Quaterniond first(poses.front().first->linear() * poses.front().second->linear().transpose());
-  Eigen::Vector4d sum = Eigen::Vector4d::Zero();  // of quaternions that are near one another
-  for (const auto& [here, own] : poses) {
-    const Eigen::Quaterniond q(here->linear() * own->linear().transpose());
-    sum += q.dot(first) < 0 ? -q.coeffs() : q.coeffs();
-  }
-  Eigen::Isometry3d T_world_robot = Eigen::Isometry3d::Identity();
-  T_world_robot.linear() = Eigen::Quaterniond(sum).normalized().toRotationMatrix();
-  for (const auto& [here, own] : poses)
-    T_world_robot.translation() +=
-        (here->translation() - T_world_robot.linear() * own->translation()) / static_cast<double>(poses.size());
-  return T_world_robot;
-}
-
 /// Whether newer keyframes do not show the same place already.
 bool Atlas::is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const {
   const auto cell = cells_.find(cell_of(world, T_world_robot * announced.T_robot_camera));

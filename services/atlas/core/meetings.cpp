@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Where the maps of robots meet, and the joint map that follows: docs/atlas.md.
 #include <algorithm>
+#include <ranges>
 
 #include "common/geometry/se3.hpp"
 #include "services/atlas/core/atlas.hpp"
@@ -184,6 +185,30 @@ bool Atlas::straighten() {
   ++counters_.corrections;
   sort_into_cells();
   return true;
+}
+
+/// Where the robot's map lies in a world, by its newest keyframes there: each of them alone is less certain.
+Eigen::Isometry3d Atlas::fit_map(const Robot& robot, MapId world) const {
+  constexpr int kKeyframes = 10;
+  std::vector<std::pair<const Eigen::Isometry3d*, const Eigen::Isometry3d*>> poses;  // here, of the robot
+  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
+    const Keyframe* keyframe = map_.find_keyframe(announced.keyframe);
+    if (keyframe == nullptr || worlds_.at(keyframe->map) != world) continue;
+    poses.emplace_back(&keyframe->T_world_camera, &announced.T_robot_camera);
+    if (poses.size() == kKeyframes) break;
+  }
+  const Eigen::Quaterniond first(poses.front().first->linear() * poses.front().second->linear().transpose());
+  Eigen::Vector4d sum = Eigen::Vector4d::Zero();  // of quaternions that are near one another
+  for (const auto& [here, own] : poses) {
+    const Eigen::Quaterniond q(here->linear() * own->linear().transpose());
+    sum += q.dot(first) < 0 ? -q.coeffs() : q.coeffs();
+  }
+  Eigen::Isometry3d T_world_robot = Eigen::Isometry3d::Identity();
+  T_world_robot.linear() = Eigen::Quaterniond(sum).normalized().toRotationMatrix();
+  for (const auto& [here, own] : poses)
+    T_world_robot.translation() +=
+        (here->translation() - T_world_robot.linear() * own->translation()) / static_cast<double>(poses.size());
+  return T_world_robot;
 }
 
 }  // namespace rtd::atlas
