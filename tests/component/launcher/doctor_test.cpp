@@ -15,6 +15,7 @@
 #include "common/msg/services.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -47,7 +48,7 @@ class DoctorTest : public testing::Test {
     return exit_code;
   }
   /// Its ports are below those that the kernel gives to any program.
-  static std::uint32_t domain() { return 60 + static_cast<std::uint32_t>(getpid()) % 40; }
+  static std::uint32_t domain() { return test_domain(); }
 
   ScratchFolder scratch_;
   RtdCommand rtd_{scratch_ / "rtd"};

@@ -11,6 +11,7 @@
 
 #include "tests/support/eventually.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd::link {
 namespace {
@@ -34,7 +35,7 @@ class OneWayTest : public ::testing::TestWithParam<std::pair<const char*, const 
     ticker_.join();
   }
 
-  static std::uint32_t domain() { return 60 + 2 * (static_cast<std::uint32_t>(getpid()) % 20); }
+  static std::uint32_t domain() { return test_domain(); }
   static std::shared_ptr<bus::RawBus> connect(const std::string& vendor, std::uint32_t domain) {
     bus::BusOptions options;
     options.vendor = vendor;

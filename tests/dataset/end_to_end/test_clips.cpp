@@ -13,6 +13,7 @@
 
 #include "tests/support/run_command.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/support/test_domain.hpp"
 
 namespace rtd {
 namespace {
@@ -44,8 +45,8 @@ class ClipTest : public ::testing::Test {
     }
     out_ = fs::path(::testing::TempDir()) / ("rtd_clip_" + std::to_string(getpid()) + "_" + name);
     const std::string command = "timeout 300 " RTD_EXECUTABLE " run --quiet " + (needs_model ? kMeasured : "") +
-                                "--domain " + std::to_string(20 + getpid() % 60) + " --source tum:" + data + "/" +
-                                clip + " " + options + " --out " + out_.string();
+                                "--domain " + std::to_string(test_domain()) + " --source tum:" + data + "/" + clip +
+                                " " + options + " --out " + out_.string();
     const testing::CommandResult result = testing::run_command(command);
     ASSERT_EQ(result.exit_code, 0) << command << "\n" << result.output;
     report_ = nlohmann::json::parse(read_file(out_ / "report.json"));
