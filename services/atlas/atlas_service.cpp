@@ -53,23 +53,6 @@ std::map<std::string, std::vector<KeyframeId>> read_owners(const std::string& ma
   return {};
 }
 
-Eigen::Isometry3d to_isometry(const msg::TransformStamped& stamped) {
-  const auto& [translation, rotation] = stamped.transform;
-  return msg::to_isometry(
-      {{translation.x, translation.y, translation.z}, {rotation.x, rotation.y, rotation.z, rotation.w}});
-}
-
-msg::TransformStamped to_stamped(const msg::Transform& T, std::int64_t stamp_ns, const std::string& parent,
-                                 const std::string& child) {
-  msg::TransformStamped stamped;
-  stamped.header = {msg::to_time(stamp_ns), parent};
-  stamped.child_frame_id = child;
-  const auto& t = T.translation_m;
-  const auto& q = T.rotation_xyzw;
-  stamped.transform = {{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}};
-  return stamped;
-}
-
 }  // namespace
 
 void AtlasService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
@@ -163,21 +146,21 @@ void AtlasService::open_lane(const std::string& robot) {
   lanes_.emplace(robot, std::move(lane));
 }
 
+/// What a robot sent before it was forgotten does not count any more.
 void AtlasService::take(const Arrival& arrival) {
+  const auto lane = lanes_.find(arrival.robot);
+  if (lane == lanes_.end()) return;
   if (const auto* update = std::get_if<Update>(&arrival.message)) {
     atlas_->follow(arrival.robot, **update);
     return;
   }
   const msg::KeyframeFeatures& features = *std::get<Features>(arrival.message);
   if (features.keyframe_id == msg::kNoId) {
-    answer_query(arrival.robot, features);
+    answer_query(arrival.robot, lane->second, features);
     return;
   }
   const std::uint64_t meetings = atlas_->counters().meetings;
-  if (atlas_->add(arrival.robot, features)) {
-    if (const auto lane = lanes_.find(arrival.robot); lane != lanes_.end() && lane->second.waiting_for > 0)
-      --lane->second.waiting_for;
-  }
+  if (atlas_->add(arrival.robot, features) && lane->second.waiting_for > 0) --lane->second.waiting_for;
   if (atlas_->counters().meetings > meetings) SPDLOG_INFO("event=meeting robot=\"{}\"", arrival.robot);
 }
 
@@ -191,14 +174,12 @@ void AtlasService::ask(const std::string& robot, Lane& lane) {
   if (lane.waiting_for > 0) lane.requests.write(request);
 }
 
-void AtlasService::answer_query(const std::string& robot, const msg::KeyframeFeatures& query) {
+void AtlasService::answer_query(const std::string& robot, Lane& lane, const msg::KeyframeFeatures& query) {
   ++asked_where_;
-  const auto lane = lanes_.find(robot);
-  if (lane == lanes_.end()) return;
   const std::optional<msg::Submap> submap = atlas_->locate(query);
   if (!submap) return;
   ++located_;
-  lane->second.submaps.write(*submap);
+  lane.submaps.write(*submap);
   if (query_log_.pass()) SPDLOG_INFO("event=located robot=\"{}\" submap_bytes={}", robot, submap->file.size());
 }
 
@@ -222,10 +203,7 @@ void AtlasService::publish() {
   msg::PoseArray poses;
   poses.header = {msg::to_time(state.stamp_ns), config_.map_frame};
   for (const msg::AtlasRobot& robot : state.robots) {
-    if (!robot.met) continue;
-    const auto& t = robot.T_map_camera.translation_m;
-    const auto& q = robot.T_map_camera.rotation_xyzw;
-    poses.poses.push_back({{t[0], t[1], t[2]}, {q[0], q[1], q[2], q[3]}});
+    if (robot.met) poses.poses.push_back(slam::to_pose(robot.T_map_camera));
   }
   poses_writer_.write(poses);
   publish_transforms(state);
@@ -238,31 +216,27 @@ void AtlasService::publish_transforms(const msg::AtlasState& state) {
   bool changed = false;
   for (const msg::AtlasRobot& robot : state.robots) {
     if (!robot.met || robot.name.empty()) continue;
-    msg::TransformStamped now =
-        to_stamped(robot.T_map_robot, state.stamp_ns, config_.map_frame, bus::frame_of_robot("map", robot.name));
     const auto before = transforms_.find(robot.name);
     if (before != transforms_.end()) {
-      const Eigen::Isometry3d T = to_isometry(before->second).inverse() * to_isometry(now);
+      const Eigen::Isometry3d T = msg::to_isometry(before->second).inverse() * msg::to_isometry(robot.T_map_robot);
       if (T.translation().norm() < kSame_m && geometry::rotation_angle_rad(T) < kSame_rad) continue;
     }
-    transforms_[robot.name] = std::move(now);
+    transforms_[robot.name] = robot.T_map_robot;
     changed = true;
   }
   if (!changed) return;
   msg::TFMessage message;
-  for (const auto& [robot, transform] : transforms_) message.transforms.push_back(transform);
+  for (const auto& [robot, T_map_robot] : transforms_)
+    message.transforms.push_back(
+        slam::make_transform(state.stamp_ns, config_.map_frame, bus::frame_of_robot("map", robot), T_map_robot));
   tf_writer_.write(message);
 }
 
 void AtlasService::publish_points() {
   const std::int64_t now_ns = service::monotonic_ns();
-  const AtlasCounters& counters = atlas_->counters();
-  if (points_writer_.matched() == 0 || now_ns - points_ns_ < kPointsNs ||
-      (counters.keyframes == shown_keyframes_ && counters.corrections == shown_corrections_))
-    return;
+  if (points_writer_.matched() == 0 || now_ns - points_ns_ < kPointsNs || shown_ == atlas_->revision()) return;
   points_ns_ = now_ns;
-  shown_keyframes_ = counters.keyframes;
-  shown_corrections_ = counters.corrections;
+  shown_ = atlas_->revision();
   points_writer_.write(slam::make_cloud(atlas_->points(), service::realtime_ns(), config_.map_frame));
 }
 
@@ -300,7 +274,8 @@ void AtlasService::load(const std::string& file) {
   const std::size_t keyframes = contents.keyframes.size();
   atlas_.emplace(config_.core);
   atlas_->restore(std::move(contents), read_owners(file));
-  saved_keyframes_ = saved_corrections_ = 0;
+  saved_ = atlas_->revision();
+  shown_.reset();
   SPDLOG_INFO("event=map_loaded file={} keyframes={}", file, keyframes);
 }
 
@@ -341,27 +316,26 @@ bus::CommandAnswer AtlasService::forget(const std::string& robot) {
 }
 
 void AtlasService::checkpoint() {
-  const std::int64_t now_ns = service::monotonic_ns();
-  const AtlasCounters& counters = atlas_->counters();
-  if (config_.map_file.empty() || now_ns - checkpoint_ns_ < config_.checkpoint_s * kSecondNs ||
-      (counters.keyframes == saved_keyframes_ && counters.corrections == saved_corrections_))
-    return;
+  if (service::monotonic_ns() - checkpoint_ns_ < config_.checkpoint_s * kSecondNs) return;
+  save_changes();
+  checkpoint_ns_ = service::monotonic_ns();
+}
+
+void AtlasService::save_changes() {
+  if (config_.map_file.empty() || saved_ == atlas_->revision()) return;
   try {
     save(config_.map_file, io::NamedBy::kOperator);
-    saved_keyframes_ = counters.keyframes;
-    saved_corrections_ = counters.corrections;
+    saved_ = atlas_->revision();
     trouble_.clear();
   } catch (const std::exception& error) {
     trouble_ = error.what();
     SPDLOG_ERROR("event=map_not_saved cause=\"{}\"", trouble_);
   }
-  checkpoint_ns_ = service::monotonic_ns();
 }
 
 service::ExitCode AtlasService::finish() {
   server_->close();
-  checkpoint_ns_ = -config_.checkpoint_s * kSecondNs;
-  checkpoint();
+  save_changes();
   const AtlasCounters& counters = atlas_->counters();
   SPDLOG_INFO("event=summary keyframes={} meetings={} refused={} corrections={} located={} dropped={}",
               counters.keyframes, counters.meetings, counters.refused, counters.corrections, located_, dropped_);

@@ -95,7 +95,7 @@ class AtlasService {
   void find_robots();
   void open_lane(const std::string& robot);
   void ask(const std::string& robot, Lane& lane);
-  void answer_query(const std::string& robot, const msg::KeyframeFeatures& query);
+  void answer_query(const std::string& robot, Lane& lane, const msg::KeyframeFeatures& query);
   void straighten();
   void publish();
   void publish_transforms(const msg::AtlasState& state);
@@ -108,6 +108,7 @@ class AtlasService {
   bus::CommandAnswer load_by_command(const std::string& name);
   bus::CommandAnswer forget(const std::string& robot);
   void checkpoint();
+  void save_changes();
   service::ExitCode finish();
 
   const Config config_;
@@ -123,11 +124,11 @@ class AtlasService {
   bus::Writer<msg::PointCloud2> points_writer_;
   bus::Writer<msg::TFMessage> tf_writer_;
   std::map<std::string, Lane> lanes_;
-  std::set<std::string> forgotten_;                          ///< robots that are not listened to any more
-  std::map<std::string, msg::TransformStamped> transforms_;  ///< as published
+  std::set<std::string> forgotten_;                   ///< robots that are not listened to any more
+  std::map<std::string, msg::Transform> transforms_;  ///< T_map_robot as published
   std::uint64_t located_ = 0, asked_where_ = 0;
-  std::uint64_t saved_keyframes_ = 0, saved_corrections_ = 0;  ///< of what the file holds
-  std::uint64_t shown_keyframes_ = 0, shown_corrections_ = 0;  ///< of the published points
+  std::uint64_t saved_ = 0;             ///< Atlas::revision() of what the file holds
+  std::optional<std::uint64_t> shown_;  ///< the same of the published points
   std::int64_t published_ns_ = 0, checkpoint_ns_ = 0, points_ns_ = 0, straightened_ns_ = 0;
   std::string trouble_;  ///< why the last save failed
   service::RateLimit robot_log_{std::chrono::seconds(1)}, query_log_{std::chrono::seconds(1)};

@@ -37,19 +37,6 @@ constexpr double kByDefinition = 1e-8;  // m2 and rad2: the first pose of a map;
 
 using geometry::RowMajor6d;
 
-msg::Pose to_pose(const msg::Transform& T) {
-  const auto& [x, y, z] = T.translation_m;
-  const auto& [qx, qy, qz, qw] = T.rotation_xyzw;
-  return {{x, y, z}, {qx, qy, qz, qw}};
-}
-
-msg::TransformStamped make_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
-                                     const msg::Transform& T_parent_child) {
-  const msg::Pose pose = to_pose(T_parent_child);
-  return {
-      {msg::to_time(stamp_ns), parent}, child, {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
-}
-
 /// Covariance of a motion between two poses of known covariance, per second, in the camera frame.
 RowMajor6d twist_covariance(const OdometryPose& pose, const OdometryPose& previous, double gap_s) {
   const RowMajor6d sum = Eigen::Map<const RowMajor6d>(pose.result.covariance.data()) +
@@ -150,6 +137,19 @@ std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output) {
         {index++, change.frame_seq, change.stamp_ns, msg::to_message(change.T_world_camera), change.id, change.kind});
   }
   return events;
+}
+
+msg::Pose to_pose(const msg::Transform& T) {
+  const auto& [x, y, z] = T.translation_m;
+  const auto& [qx, qy, qz, qw] = T.rotation_xyzw;
+  return {{x, y, z}, {qx, qy, qz, qw}};
+}
+
+msg::TransformStamped make_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                                     const msg::Transform& T_parent_child) {
+  const msg::Pose pose = to_pose(T_parent_child);
+  return {
+      {msg::to_time(stamp_ns), parent}, child, {{pose.position.x, pose.position.y, pose.position.z}, pose.orientation}};
 }
 
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names) {

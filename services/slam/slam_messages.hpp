@@ -56,6 +56,9 @@ msg::TrackingResult make_result(const FrameResult& result);
 /// One event for each change, in their order.
 std::vector<msg::KeyframeEvent> make_events(const SlamOutput& output);
 
+msg::Pose to_pose(const msg::Transform& T);
+msg::TransformStamped make_transform(std::int64_t stamp_ns, const std::string& parent, const std::string& child,
+                                     const msg::Transform& T_parent_child);
 msg::PoseStamped make_pose(const msg::TrackingResult& result, const FrameNames& names);
 
 /// A result with pose and covariance in frame odom.

@@ -108,6 +108,9 @@ void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
     if ((entry.content & msg::kMapEdges) != 0) announced.covisible = entry.covisible;
     if (known == robot.keyframes.end()) {
       announced.keyframe = find_known(name, entry.keyframe_id, entry.stamp_ns);
+      if (const auto source = sources_.find(announced.keyframe);
+          source != sources_.end() && source->second.robot == name)
+        source->second.id = entry.keyframe_id;  // after a restart
     } else if (map_.find_keyframe(announced.keyframe) != nullptr && has_moved(T_before, announced.T_robot_camera)) {
       crooked_[world_of(announced.keyframe)] = name;
     }
@@ -199,6 +202,8 @@ bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
   for (const LandmarkId id : keyframe.landmarks)
     if (id != kNoLandmark) map_.refresh_landmark(id);
   ++counters_.keyframes;
+  ++revision_;
+  cells_[cell_of(worlds_.at(keyframe.map), T_world_camera)].push_back(keyframe.id);
   look_for_meeting(name, robot, keyframe.id);
   give_way(keyframe.id);
   return true;
@@ -218,8 +223,11 @@ void Atlas::see_landmark(Robot& robot, const Keyframe& keyframe, std::uint32_t f
 }
 
 Atlas::Cell Atlas::cell_of(MapId world, const Eigen::Isometry3d& T_world_camera) const {
-  constexpr double kSectors = 8;  // of viewing directions, each way round
-  const auto part = [](double value, double size) { return static_cast<int>(std::floor(value / size)); };
+  constexpr double kSectors = 8;     // of viewing directions, each way round
+  constexpr double kFarthest = 1e9;  // what robots send adds up
+  const auto part = [&](double value, double size) {
+    return static_cast<int>(std::clamp(std::floor(value / size), -kFarthest, kFarthest));
+  };
   const Eigen::Vector3d place = T_world_camera.translation(), view = T_world_camera.linear().col(2);
   constexpr double kSector_rad = 2 * std::numbers::pi / kSectors;
   return {static_cast<int>(world),
@@ -239,8 +247,7 @@ void Atlas::sort_into_cells() {
 /// Of one place the newest keyframes stay: what was there before has changed, or is said once more.
 void Atlas::give_way(KeyframeId newest) {
   const Keyframe& keyframe = *map_.find_keyframe(newest);
-  std::vector<KeyframeId>& cell = cells_[cell_of(worlds_.at(keyframe.map), keyframe.T_world_camera)];
-  cell.push_back(newest);
+  const std::vector<KeyframeId>& cell = cells_[cell_of(worlds_.at(keyframe.map), keyframe.T_world_camera)];
   if (static_cast<int>(map_.keyframes().size()) > config_.most_keyframes) {
     ++counters_.given_way;
     drop(by_stamp_.begin()->second);
@@ -283,6 +290,7 @@ void Atlas::drop(KeyframeId id) {
   std::erase(cell, id);
   const auto [first, last] = by_stamp_.equal_range(keyframe.frame->stamp_ns);
   by_stamp_.erase(std::find_if(first, last, [&](const auto& entry) { return entry.second == id; }));
+  ++revision_;
   places_.remove(id);
   sources_.erase(id);
   map_.forget_removed(0);
@@ -367,7 +375,7 @@ msg::AtlasState Atlas::state() const {
     entry.T_map_robot = entry.T_map_camera = msg::to_message(Eigen::Isometry3d::Identity());
     const Announced* newest = newest_known(robot);
     if (newest == nullptr || !is_joined(newest->keyframe)) continue;
-    const Eigen::Isometry3d T_map_robot = fit_map(robot, world_of(newest->keyframe));
+    const Eigen::Isometry3d T_map_robot = fit_map(robot, *newest);
     const Announced& last = robot.keyframes.rbegin()->second;
     entry.met = true;
     entry.stamp_ns = last.stamp_ns;

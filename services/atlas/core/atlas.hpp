@@ -97,6 +97,8 @@ class Atlas {
   /// The landmarks of the joint map.
   std::vector<slam::MapPoint> points() const;
   const AtlasCounters& counters() const { return counters_; }
+  /// Counts the changes of the map; what was restored is 0.
+  std::uint64_t revision() const { return revision_; }
   const slam::Map& map() const { return map_; }
   /// Whether a keyframe is in the frame `map`: of the world that began first.
   bool is_joined(KeyframeId keyframe) const;
@@ -135,7 +137,7 @@ class Atlas {
   KeyframeId find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const;
   const Announced* choose_parent(const Robot& robot, KeyframeId id) const;
   const Announced* newest_known(const Robot& robot) const;
-  Eigen::Isometry3d fit_map(const Robot& robot, MapId world) const;
+  Eigen::Isometry3d fit_map(const Robot& robot, const Announced& newest) const;
   bool is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const;
   void see_landmark(Robot& robot, const slam::Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id);
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);
@@ -169,6 +171,7 @@ class Atlas {
   std::uint64_t last_meeting_ = 0;        ///< Meeting::number
   std::map<MapId, std::string> crooked_;  ///< worlds that are to be straightened, and the robot that is the cause
   AtlasCounters counters_;
+  std::uint64_t revision_ = 0;
 };
 
 }  // namespace rtd::atlas

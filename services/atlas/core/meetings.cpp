@@ -87,6 +87,7 @@ void Atlas::join_worlds(MapId kept, MapId joined, const Eigen::Isometry3d& T_kep
   crooked_.erase(joined);
   for (auto& [name, robot] : robots_) robot.undecided.clear();  // they spoke of other worlds
   ++counters_.corrections;
+  ++revision_;
   sort_into_cells();
 }
 
@@ -183,17 +184,20 @@ bool Atlas::straighten() {
   for (const auto& [world, robot] : std::exchange(crooked_, {})) moved = straighten_world(world, robot) || moved;
   if (!moved) return false;
   ++counters_.corrections;
+  ++revision_;
   sort_into_cells();
   return true;
 }
 
-/// Where the robot's map lies in a world, by its newest keyframes there: each of them alone is less certain.
-Eigen::Isometry3d Atlas::fit_map(const Robot& robot, MapId world) const {
+/// Where the map of the robot that its newest keyframe is in lies in its world, by the newest there: each of them alone
+/// is less certain.
+Eigen::Isometry3d Atlas::fit_map(const Robot& robot, const Announced& newest) const {
+  const MapId world = world_of(newest.keyframe);
   constexpr int kKeyframes = 10;
   std::vector<std::pair<const Eigen::Isometry3d*, const Eigen::Isometry3d*>> poses;  // here, of the robot
   for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
     const Keyframe* keyframe = map_.find_keyframe(announced.keyframe);
-    if (keyframe == nullptr || worlds_.at(keyframe->map) != world) continue;
+    if (keyframe == nullptr || announced.map != newest.map || worlds_.at(keyframe->map) != world) continue;
     poses.emplace_back(&keyframe->T_world_camera, &announced.T_robot_camera);
     if (poses.size() == kKeyframes) break;
   }

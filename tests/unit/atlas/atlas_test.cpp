@@ -140,6 +140,19 @@ TEST(Atlas, a_robot_with_a_false_map_bends_no_other_map) {
   EXPECT_LT(error_m(atlas, anna, anna), 0.01);
 }
 
+TEST(Atlas, knows_that_it_changed) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(150, atlas);
+  const std::uint64_t before = atlas.revision();
+  EXPECT_GT(before, 0U);
+  anna.teller().report(atlas);
+  EXPECT_EQ(atlas.revision(), before) << "nothing new";
+  atlas.forget("anna");
+  EXPECT_GT(atlas.revision(), before) << "or a checkpoint would keep what was forgotten";
+}
+
 TEST(Atlas, takes_nothing_that_cannot_be) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas atlas({});
