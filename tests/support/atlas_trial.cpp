@@ -5,9 +5,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
+#include <functional>
 
 #include "tests/support/atlas_robot.hpp"
 
@@ -52,72 +52,104 @@ double rmse_m(const Pairs& pairs, const eval::Alignment& alignment) {
   return std::sqrt(sum / static_cast<double>(pairs.truth.size()));
 }
 
+/// What a walk leaves behind for the sum of all.
+struct Walked {
+  Pairs pairs;
+  FirstPose first;
+};
+
+/// Asks for the place of every so-many-th frame until one is found, and takes note of when and where.
+class PlaceSeeker {
+ public:
+  PlaceSeeker(const atlas::Atlas& atlas, TrialResult::Robot& entry) : atlas_(atlas), entry_(entry) {}
+
+  void look(const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
+    if (entry_.first_pose_s >= 0) return;
+    const std::int64_t stamp_ns = frame.image.stamp_ns;
+    const auto submap = atlas_.locate(query_of(*make_feature_frame(frame.image, features)));
+    if (asked_ns_ == 0) asked_ns_ = stamp_ns;
+    if (!submap) return;
+    entry_.first_pose_s = 1e-9 * static_cast<double>(stamp_ns - asked_ns_);
+    first_ = {stamp_ns, msg::to_isometry(submap->T_map_camera).translation(), std::nullopt};
+  }
+  FirstPose first(const eval::Trajectory& groundtruth) const {
+    FirstPose first = first_;
+    if (first.stamp_ns == 0) return first;
+    const eval::GroundtruthLookup lookup(groundtruth, 0);
+    if (const Eigen::Isometry3d* truth = lookup.find(first.stamp_ns)) first.p_truth = truth->translation();
+    return first;
+  }
+
+ private:
+  const atlas::Atlas& atlas_;
+  TrialResult::Robot& entry_;
+  std::int64_t asked_ns_ = 0;
+  FirstPose first_;
+};
+
+Walked walk(const TrialRobot& robot, const OfflineOptions& options, atlas::Atlas& atlas, TrialResult::Robot& entry) {
+  constexpr int kReportEvery = 15;
+  OfflineOptions own = options;
+  own.source = robot.source;
+  own.first_frame = robot.first_frame;
+  own.max_frames = robot.max_frames;
+  std::optional<AtlasTeller> teller;
+  PlaceSeeker seeker(atlas, entry);
+  int frames = 0;
+  own.on_start = [&](slam::SlamSystem& slam) { teller.emplace(robot.name, slam); };
+  own.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
+    if (frames % kReportEvery == 0) seeker.look(frame, features);
+  };
+  own.on_frame = [&](const slam::SlamOutput&) {
+    if (++frames % kReportEvery == 0) teller->report(atlas);
+  };
+  own.on_end = [&](slam::SlamSystem&) { teller->report(atlas); };
+  const OfflineReport report = run_offline(own);
+  entry.ate_alone_m = report.ate_rmse_m;
+  entry.add_ms = 1e3 * eval::summarize(teller->add_s).mean;
+  entry.straighten_ms = 1e3 * eval::summarize(teller->straighten_s).mean;
+  entry.kilobytes_per_s = 1e-3 * static_cast<double>(teller->bytes_sent) * 30 / frames;
+  Walked walked{{}, seeker.first(report.groundtruth)};
+  walked.pairs.add(eval::ate(report.trajectory, report.groundtruth));
+  return walked;
+}
+
+/// How well all that met fit together.
+void judge(const msg::AtlasState& state, std::vector<Walked>& walks, TrialResult& result) {
+  Pairs all;
+  for (std::size_t i = 0; i < walks.size(); ++i) {
+    TrialResult::Robot& entry = result.robots[i];
+    const msg::AtlasRobot& found = robot_in(state, entry.name);
+    entry.met = found.met;
+    entry.meetings = found.meetings;
+    entry.keyframes = found.keyframes;
+    const Pairs& pairs = walks[i].pairs = walks[i].pairs.moved(msg::to_isometry(found.T_map_robot));
+    if (!found.met) continue;
+    all.estimate.insert(all.estimate.end(), pairs.estimate.begin(), pairs.estimate.end());
+    all.truth.insert(all.truth.end(), pairs.truth.begin(), pairs.truth.end());
+  }
+  const eval::Alignment alignment = eval::align(columns(all.estimate), columns(all.truth), eval::AlignmentKind::kRigid);
+  for (std::size_t i = 0; i < walks.size(); ++i) {
+    const FirstPose& first = walks[i].first;
+    result.robots[i].ate_joint_m = rmse_m(walks[i].pairs, alignment);
+    if (first.p_truth) result.robots[i].first_pose_error_m = (alignment * first.p_map - *first.p_truth).norm();
+  }
+  result.ate_joint_m = rmse_m(all, alignment);
+}
+
 }  // namespace
 
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
                             const atlas::AtlasConfig& config) {
-  constexpr int kReportEvery = 15;
   atlas::Atlas atlas(config);
   TrialResult result;
-  std::vector<Pairs> pairs;
-  std::vector<FirstPose> firsts(robots.size());
+  std::vector<Walked> walks;
   for (const TrialRobot& robot : robots) {
     TrialResult::Robot& entry = result.robots.emplace_back();
     entry.name = robot.name;
-    FirstPose& first = firsts[result.robots.size() - 1];
-    OfflineOptions own = options;
-    own.source = robot.source;
-    own.first_frame = robot.first_frame;
-    own.max_frames = robot.max_frames;
-    std::optional<AtlasTeller> teller;
-    int frames = 0;
-    std::int64_t first_ns = 0, last_ns = 0;
-    own.on_start = [&](slam::SlamSystem& slam) { teller.emplace(robot.name, slam); };
-    own.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
-      if (frames % kReportEvery != 0 || entry.first_pose_s >= 0) return;
-      const auto submap = atlas.locate(query_of(*make_feature_frame(frame.image, features)));
-      if (first_ns == 0) first_ns = frame.image.stamp_ns;
-      if (!submap) return;
-      entry.first_pose_s = 1e-9 * static_cast<double>(frame.image.stamp_ns - first_ns);
-      first.stamp_ns = frame.image.stamp_ns;
-      first.p_map = msg::to_isometry(submap->T_map_camera).translation();
-    };
-    own.on_frame = [&](const slam::SlamOutput& output) {
-      last_ns = output.result.stamp_ns;
-      if (++frames % kReportEvery == 0) teller->report(atlas);
-    };
-    own.on_end = [&](slam::SlamSystem&) { teller->report(atlas); };
-    const OfflineReport report = run_offline(own);
-    pairs.emplace_back().add(eval::ate(report.trajectory, report.groundtruth));
-    if (first.stamp_ns != 0) {
-      const eval::GroundtruthLookup lookup(report.groundtruth, 0);
-      if (const Eigen::Isometry3d* truth = lookup.find(first.stamp_ns)) first.p_truth = truth->translation();
-    }
-    entry.ate_alone_m = report.ate_rmse_m;
-    entry.add_ms = 1e3 * eval::summarize(teller->add_s).mean;
-    entry.straighten_ms = 1e3 * eval::summarize(teller->straighten_s).mean;
-    entry.kilobytes_per_s = 1e-3 * static_cast<double>(teller->bytes_sent) * 30 / frames;
+    walks.push_back(walk(robot, options, atlas, entry));
   }
-  Pairs all;
-  const msg::AtlasState state = atlas.state();
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    const msg::AtlasRobot& found = robot_in(state, robots[i].name);
-    TrialResult::Robot& entry = result.robots[i];
-    entry.met = found.met;
-    entry.meetings = found.meetings;
-    entry.keyframes = found.keyframes;
-    pairs[i] = pairs[i].moved(msg::to_isometry(found.T_map_robot));
-    if (!found.met) continue;
-    all.estimate.insert(all.estimate.end(), pairs[i].estimate.begin(), pairs[i].estimate.end());
-    all.truth.insert(all.truth.end(), pairs[i].truth.begin(), pairs[i].truth.end());
-  }
-  const eval::Alignment alignment = eval::align(columns(all.estimate), columns(all.truth), eval::AlignmentKind::kRigid);
-  for (std::size_t i = 0; i < robots.size(); ++i) {
-    result.robots[i].ate_joint_m = rmse_m(pairs[i], alignment);
-    if (firsts[i].p_truth)
-      result.robots[i].first_pose_error_m = (alignment * firsts[i].p_map - *firsts[i].p_truth).norm();
-  }
-  result.ate_joint_m = rmse_m(all, alignment);
+  judge(atlas.state(), walks, result);
   result.counters = atlas.counters();
   return result;
 }
@@ -152,51 +184,97 @@ double peak_mb() {
   return static_cast<double>(usage.ru_maxrss) / 1024;
 }
 
+constexpr int kPerSecond = 2;  ///< keyframes of a robot; the service requests and reports as often
+
+/// A robot that goes along a walk again and again, with a map and landmarks of its own.
+class Walker {
+ public:
+  Walker(const Walk& walk, int number) : walk_(walk), number_(number), name_("robot" + std::to_string(number)) {}
+  const std::string& name() const { return name_; }
+
+  msg::MapUpdate announce(int step) const {
+    Eigen::Isometry3d T_own_map = Eigen::Isometry3d::Identity();
+    T_own_map.translation().x() = number_;
+    msg::MapUpdate update;
+    update.session_ns = kSessionNs;
+    msg::MapKeyframe& entry = update.keyframes.emplace_back();
+    entry.keyframe_id = static_cast<std::uint32_t>(step);
+    entry.stamp_ns = stamp_ns(step);
+    entry.T_world_camera = msg::to_message(T_own_map * walk_.T_map_camera[at(step)]);
+    return update;
+  }
+  msg::KeyframeFeatures features(int step) const {
+    msg::KeyframeFeatures features = walk_.features[at(step)];
+    features.session_ns = kSessionNs;
+    features.keyframe_id = static_cast<std::uint32_t>(step);
+    features.stamp_ns = stamp_ns(step);
+    const auto round = static_cast<std::uint32_t>(place(step) / walk_.features.size());
+    for (msg::KeyframeFeature& feature : features.features)
+      if (feature.landmark_id != msg::kNoId) feature.landmark_id += 100'000U * round;
+    return features;
+  }
+
+ private:
+  static constexpr std::int64_t kSessionNs = 1;
+  std::size_t place(int step) const { return static_cast<std::size_t>(step) + 3 * static_cast<std::size_t>(number_); }
+  std::size_t at(int step) const { return place(step) % walk_.features.size(); }
+  std::int64_t stamp_ns(int step) const { return step * (1'000'000'000LL / kPerSecond) + number_; }
+
+  const Walk& walk_;
+  int number_;
+  std::string name_;
+};
+
+/// One worker that what comes waits for; its time is the CPU's. All in s since the start.
+class Worker {
+ public:
+  void work(double comes_s, const std::function<void()>& job) {
+    const std::clock_t start = std::clock();
+    job();
+    const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    cpu_s += took_s;
+    free_s = std::max(free_s, comes_s) + took_s;
+  }
+  double free_s = 0;  ///< from then on
+  double cpu_s = 0;
+};
+
 }  // namespace
 
 ScaleResult run_scale_trial(const OfflineOptions& source, int robots, int seconds, const atlas::AtlasConfig& config) {
-  constexpr int kPerSecond = 2;
-  constexpr std::int64_t kSessionNs = 1, kPeriodNs = 1'000'000'000 / kPerSecond;
+  constexpr double kStep_s = 1.0 / kPerSecond;
+  constexpr std::size_t kRequested = 10;
   const Walk walk = walk_once(source);
+  std::vector<Walker> walkers;
+  for (int robot = 0; robot < robots; ++robot) walkers.emplace_back(walk, robot);
   atlas::Atlas atlas(config);
+  Worker worker;
   ScaleResult result;
   std::vector<double> took_ms;
-  const std::clock_t cpu = std::clock();
-  const auto start = std::chrono::steady_clock::now();
   for (int step = 0; step < seconds * kPerSecond; ++step) {
-    for (int robot = 0; robot < robots; ++robot) {
-      const std::string name = "robot" + std::to_string(robot);
-      const std::size_t at = static_cast<std::size_t>(step + 3 * robot) % walk.features.size();
-      const int round = (step + 3 * robot) / static_cast<int>(walk.features.size());
-      Eigen::Isometry3d T_own_map = Eigen::Isometry3d::Identity();
-      T_own_map.translation().x() = robot;
-      msg::KeyframeFeatures features = walk.features[at];
-      features.session_ns = kSessionNs;
-      features.keyframe_id = static_cast<std::uint32_t>(step);
-      features.stamp_ns = step * kPeriodNs + robot;
-      for (msg::KeyframeFeature& feature : features.features)
-        if (feature.landmark_id != msg::kNoId) feature.landmark_id += 100'000U * static_cast<std::uint32_t>(round);
-      msg::MapUpdate update;
-      update.session_ns = kSessionNs;
-      msg::MapKeyframe& entry = update.keyframes.emplace_back();
-      entry.keyframe_id = features.keyframe_id;
-      entry.stamp_ns = features.stamp_ns;
-      entry.T_world_camera = msg::to_message(T_own_map * walk.T_map_camera[at]);
-      const auto began = std::chrono::steady_clock::now();
-      atlas.follow(name, update);
-      atlas.add(name, features);
-      atlas.straighten();
-      took_ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count());
-      ++result.keyframes;
+    std::vector<double> came_s;
+    for (const Walker& walker : walkers) {
+      const msg::MapUpdate update = walker.announce(step);
+      const msg::KeyframeFeatures features = walker.features(step);
+      came_s.push_back(kStep_s * (step + static_cast<double>(came_s.size()) / robots));
+      worker.work(came_s.back(), [&] {
+        atlas.follow(walker.name(), update);
+        atlas.add(walker.name(), features);
+      });
     }
+    worker.work(kStep_s * (step + 1), [&] { atlas.straighten(); });
+    for (const double since_s : came_s) took_ms.push_back(1e3 * (worker.free_s - since_s));
+    worker.work(worker.free_s, [&] {
+      for (const Walker& walker : walkers) atlas.missing(walker.name(), kRequested);
+      result.all_met = std::ranges::all_of(atlas.state().robots, &msg::AtlasRobot::met);
+    });
   }
-  result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.cpu_s = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  result.keyframes = took_ms.size();
+  result.cpu_s = worker.cpu_s;
   result.p99_ms = eval::percentile(took_ms, 0.99);
   result.longest_ms = *std::ranges::max_element(took_ms);
   result.kept = atlas.map().keyframes().size();
   result.peak_mb = peak_mb();
-  result.all_met = std::ranges::all_of(atlas.state().robots, &msg::AtlasRobot::met);
   return result;
 }
 

@@ -40,16 +40,17 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
 
 /// How an atlas does with many robots.
 struct ScaleResult {
-  std::uint64_t keyframes = 0;  ///< sent
-  double cpu_s = 0, wall_s = 0;
-  double p99_ms = 0, longest_ms = 0;  ///< from a keyframe to the joint map with it
+  std::uint64_t keyframes = 0;        ///< sent
+  double cpu_s = 0;                   ///< of the atlas
+  double p99_ms = 0, longest_ms = 0;  ///< from a keyframe to the joint map with it, on a core of its own
   std::size_t kept = 0;               ///< keyframes in the joint map at the end
   double peak_mb = 0;                 ///< of this process
   bool all_met = false;
 };
 
 /// `robots` walk for `seconds`, faster than time, each again and again along the keyframes of one walk through
-/// `source`, with clocks and maps of their own and two keyframes a second.
+/// `source`, with clocks and maps of their own and two keyframes a second. Each half second the joint map is put right,
+/// keyframes are requested and the state is made, as by the service.
 ScaleResult run_scale_trial(const OfflineOptions& source, int robots, int seconds,
                             const atlas::AtlasConfig& config = {});
 
