@@ -20,21 +20,12 @@ using slam::Landmark;
 
 namespace {
 
-/// A correction by the robot of less than this does not show in the joint map.
-constexpr double kMoved_m = 0.01, kMoved_rad = 0.005;
-/// Keyframes of one robot; no honest map has more.
-constexpr std::size_t kMostAnnounced = 100'000;
 /// What a robot sees as one of its landmarks lies no farther from it than this, unless the map it belongs to is
 /// another.
 constexpr double kSameLandmark_m = 0.3;
 
 /// How a robot's map drifts away from the joint map on the way since their last meeting.
 constexpr double kDrift = 0.01, kDriftRadPerM = 0.002;
-
-bool has_moved(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d& T_now) {
-  const Eigen::Isometry3d T = T_before.inverse() * T_now;
-  return T.translation().norm() > kMoved_m || geometry::rotation_angle_rad(T) > kMoved_rad;
-}
 
 }  // namespace
 
@@ -73,103 +64,6 @@ bool Atlas::is_joined(KeyframeId keyframe) const {
   return !worlds_.empty() && world_of(keyframe) == worlds_.begin()->second;
 }
 
-/// A keyframe that is here already: of this robot, before its map or this process began again, or of the map that the
-/// robot was given and that has the same ids.
-KeyframeId Atlas::find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const {
-  const auto [first, last] = by_stamp_.equal_range(stamp_ns);
-  for (auto it = first; it != last; ++it)
-    if (it->second == id || sources_.at(it->second).robot == robot) return it->second;
-  return kNoKeyframe;
-}
-
-void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
-  Robot& robot = robots_[name];
-  if (robot.session_ns != update.session_ns) {
-    const std::uint32_t meetings = robot.meetings;
-    robot = {};
-    robot.session_ns = update.session_ns;
-    robot.meetings = meetings;
-  }
-  for (const msg::MapKeyframe& entry : update.keyframes) {
-    const auto known = robot.keyframes.find(entry.keyframe_id);
-    if ((entry.content & msg::kMapRemoved) != 0) {
-      if (known == robot.keyframes.end()) continue;
-      const auto source = sources_.find(known->second.keyframe);
-      if (source != sources_.end() && source->second.robot == name) drop(source->first);
-      robot.keyframes.erase(known);
-      continue;
-    }
-    if (known == robot.keyframes.end() && robot.keyframes.size() >= kMostAnnounced) continue;
-    Announced& announced = robot.keyframes[entry.keyframe_id];
-    const Eigen::Isometry3d T_before = announced.T_robot_camera;
-    announced.T_robot_camera = msg::to_isometry(entry.T_world_camera);
-    announced.stamp_ns = entry.stamp_ns;
-    announced.map = entry.map_id;
-    if ((entry.content & msg::kMapEdges) != 0) announced.covisible = entry.covisible;
-    if (known == robot.keyframes.end()) {
-      announced.keyframe = find_known(name, entry.keyframe_id, entry.stamp_ns);
-      if (const auto source = sources_.find(announced.keyframe);
-          source != sources_.end() && source->second.robot == name)
-        source->second.id = entry.keyframe_id;  // after a restart
-    } else if (map_.find_keyframe(announced.keyframe) != nullptr && has_moved(T_before, announced.T_robot_camera)) {
-      crooked_[world_of(announced.keyframe)] = name;
-    }
-  }
-}
-
-const Atlas::Announced* Atlas::newest_known(const Robot& robot) const {
-  for (const auto& [id, announced] : robot.keyframes | std::views::reverse)
-    if (map_.find_keyframe(announced.keyframe) != nullptr) return &announced;
-  return nullptr;
-}
-
-/// Whether newer keyframes do not show the same place already.
-bool Atlas::is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const {
-  const auto cell = cells_.find(cell_of(world, T_world_robot * announced.T_robot_camera));
-  if (cell == cells_.end()) return true;
-  const auto newer = std::ranges::count_if(
-      cell->second, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns > announced.stamp_ns; });
-  return newer < config_.cell_keyframes;
-}
-
-msg::KeyframeRequest Atlas::missing(const std::string& name, std::size_t limit) const {
-  const auto it = robots_.find(name);
-  if (it == robots_.end()) return {};
-  const Robot& robot = it->second;
-  msg::KeyframeRequest request;
-  request.session_ns = robot.session_ns;
-  const Announced* newest = newest_known(robot);
-  int newer = 0;
-  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
-    if (newer++ < config_.settled_after || map_.find_keyframe(announced.keyframe) != nullptr) continue;
-    if (newest != nullptr) {
-      const Keyframe& known = *map_.find_keyframe(newest->keyframe);
-      const Eigen::Isometry3d T_world_robot = known.T_world_camera * newest->T_robot_camera.inverse();
-      if (!is_wanted(announced, T_world_robot, worlds_.at(known.map))) continue;
-    }
-    if (request.keyframe_ids.size() == limit) break;
-    request.keyframe_ids.push_back(id);
-  }
-  return request;
-}
-
-/// The keyframe that a new one is placed by: one that sees much of the same, else the one before, else the one after.
-const Atlas::Announced* Atlas::choose_parent(const Robot& robot, KeyframeId id) const {
-  const auto own = robot.keyframes.find(id);
-  const auto is_here = [&](const Announced& other) {
-    return other.map == own->second.map && map_.find_keyframe(other.keyframe) != nullptr;
-  };
-  for (const KeyframeId neighbour : own->second.covisible | std::views::reverse) {
-    const auto other = robot.keyframes.find(neighbour);
-    if (other != robot.keyframes.end() && is_here(other->second)) return &other->second;
-  }
-  for (auto it = own; it != robot.keyframes.begin();)
-    if (is_here((--it)->second)) return &it->second;
-  for (auto it = std::next(own); it != robot.keyframes.end(); ++it)
-    if (is_here(it->second)) return &it->second;
-  return nullptr;
-}
-
 bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
   const auto found = robots_.find(name);
   if (found == robots_.end() || message.session_ns != found->second.session_ns) return false;
@@ -195,18 +89,29 @@ bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
   const Keyframe& keyframe = *map_.find_keyframe(announced.keyframe);
   worlds_.try_emplace(keyframe.map, keyframe.map);
   sources_[keyframe.id] = {name, message.keyframe_id};
+  robot.here.insert(message.keyframe_id);
+  robot.wanted.erase(message.keyframe_id);
   by_stamp_.emplace(message.stamp_ns, keyframe.id);
   places_.add(keyframe.id, vocabulary_->describe(frame->features));
   for (std::uint32_t i = 0; i < kept.size(); ++i)
     see_landmark(robot, keyframe, i, message.features[kept[i]].landmark_id);
   for (const LandmarkId id : keyframe.landmarks)
     if (id != kNoLandmark) map_.refresh_landmark(id);
+  forget_landmarks(robot);
   ++counters_.keyframes;
   ++revision_;
   cells_[cell_of(worlds_.at(keyframe.map), T_world_camera)].push_back(keyframe.id);
   look_for_meeting(name, robot, keyframe.id);
   give_way(keyframe.id);
   return true;
+}
+
+/// Those that live no more: else an hour of keyframes would leave hundreds of megabytes of them.
+void Atlas::forget_landmarks(Robot& robot) const {
+  constexpr std::size_t kFew = 10'000;
+  if (robot.landmarks.size() < 2 * robot.living_landmarks + kFew) return;
+  std::erase_if(robot.landmarks, [&](const auto& entry) { return map_.find_landmark(entry.second) == nullptr; });
+  robot.living_landmarks = robot.landmarks.size();
 }
 
 void Atlas::see_landmark(Robot& robot, const Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id) {
@@ -285,7 +190,13 @@ void Atlas::drop(KeyframeId id) {
                           : !keyframe.children.empty() ? keyframe.children.front()
                                                        : kNoKeyframe;
   hand_on_meetings(meetings_, id, heir);
-  for (auto& [name, robot] : robots_) hand_on_meetings(robot.undecided, id, heir);
+  const Source& source = sources_.at(id);
+  for (auto& [name, robot] : robots_) {
+    hand_on_meetings(robot.undecided, id, heir);
+    for (const KeyframeId own : {source.robot == name ? source.id : id, id})
+      if (const auto it = robot.keyframes.find(own); it != robot.keyframes.end() && it->second.keyframe == id)
+        robot.here.erase(own);
+  }
   std::vector<KeyframeId>& cell = cells_[cell_of(world_of(id), keyframe.T_world_camera)];
   std::erase(cell, id);
   const auto [first, last] = by_stamp_.equal_range(keyframe.frame->stamp_ns);
@@ -303,6 +214,9 @@ std::size_t Atlas::forget(const std::string& name) {
     if (source.robot == name) gone.push_back(id);
   for (const KeyframeId id : gone) drop(id);
   robots_.erase(name);
+  for (auto& [other, robot] : robots_)  // what gave way to its keyframes
+    for (const auto& [id, announced] : robot.keyframes)
+      if (!robot.here.contains(id)) robot.wanted.insert(id);
   std::erase_if(worlds_, [&](const auto& world) { return map_.keyframe_count(world.first) == 0; });
   return gone.size();
 }
@@ -370,7 +284,8 @@ msg::AtlasState Atlas::state() const {
     msg::AtlasRobot& entry = state.robots.emplace_back();
     entry.name = name;
     entry.keyframes = kept[name];
-    entry.missing = static_cast<std::uint32_t>(missing(name, robot.keyframes.size()).keyframe_ids.size());
+    const auto unsettled = std::distance(settled_end(robot), robot.wanted.end());
+    entry.missing = static_cast<std::uint32_t>(robot.wanted.size()) - static_cast<std::uint32_t>(unsettled);
     entry.meetings = robot.meetings;
     entry.T_map_robot = entry.T_map_camera = msg::to_message(Eigen::Isometry3d::Identity());
     const Announced* newest = newest_known(robot);

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -81,8 +82,9 @@ class Atlas {
 
   /// Which keyframes a robot has and where they are in its own map.
   void follow(const std::string& robot, const msg::MapUpdate& update);
-  /// Those whose features are wanted, the newest first; at most `limit`.
-  msg::KeyframeRequest missing(const std::string& robot, std::size_t limit) const;
+  /// Those whose features are wanted, the newest first; at most `limit`. What has given way, to newer ones of its place
+  /// or because there is too much, is not wanted again until a robot is forgotten.
+  msg::KeyframeRequest missing(const std::string& robot, std::size_t limit);
   /// The features of one of them; looks whether it meets the map of another robot. True when it was taken.
   bool add(const std::string& robot, const msg::KeyframeFeatures& message);
   /// Where in the joint map a frame is, with the map around it; empty when it is not recognised.
@@ -110,7 +112,7 @@ class Atlas {
     std::int64_t stamp_ns = 0;
     MapId map = 0;  ///< of the robot
     std::vector<KeyframeId> covisible;
-    KeyframeId keyframe = slam::kNoKeyframe;  ///< here; may have given way since
+    KeyframeId keyframe = slam::kNoKeyframe;  ///< here, or where it was until it gave way
   };
   /// Two keyframes that show the same place.
   struct Meeting {
@@ -121,8 +123,10 @@ class Atlas {
   };
   struct Robot {
     std::int64_t session_ns = 0;
-    std::map<KeyframeId, Announced> keyframes;
+    std::map<KeyframeId, Announced> keyframes;                ///< by its own ids
+    std::set<KeyframeId> here, wanted;                        ///< of these; the others have given way
     std::unordered_map<std::uint32_t, LandmarkId> landmarks;  ///< by its own ids
+    std::size_t living_landmarks = 0;                         ///< of these, when they were last checked
     std::vector<Meeting> undecided;                           ///< that too few others agree with
     int since_look = 0;
     double way_m = 0, way_at_meeting_m = 0;
@@ -135,10 +139,14 @@ class Atlas {
   using Cell = std::array<int, 6>;  ///< world, place, viewing direction
 
   KeyframeId find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const;
+  void follow(const std::string& name, Robot& robot, const msg::MapKeyframe& entry);
+  void withdraw(const std::string& name, Robot& robot, KeyframeId id);
   const Announced* choose_parent(const Robot& robot, KeyframeId id) const;
-  const Announced* newest_known(const Robot& robot) const;
+  static const Announced* newest_known(const Robot& robot);
+  std::set<KeyframeId>::const_iterator settled_end(const Robot& robot) const;
   Eigen::Isometry3d fit_map(const Robot& robot, const Announced& newest) const;
   bool is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const;
+  void forget_landmarks(Robot& robot) const;
   void see_landmark(Robot& robot, const slam::Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id);
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);
   std::optional<slam::PlaceMeeting> meet(const std::string& name, const Robot& robot, KeyframeId keyframe);
@@ -151,6 +159,7 @@ class Atlas {
   std::vector<KeyframeId> around(KeyframeId place, const Eigen::Isometry3d& T_world_camera) const;
   void give_way(KeyframeId newest);
   void drop(KeyframeId keyframe);
+  void trim_meetings();
   void hand_on_meetings(std::vector<Meeting>& meetings, KeyframeId id, KeyframeId heir) const;
   bool straighten_world(MapId world, const std::string& robot);
   bool bends_others(const slam::PoseGraph& graph, const std::vector<KeyframeId>& nodes, const std::string& robot) const;

@@ -179,8 +179,22 @@ bool Atlas::straighten_world(MapId world, const std::string& robot) {
   return false;
 }
 
+/// Of what a keyframe has met, the newest count: more of them say the same, and meetings would grow with time.
+void Atlas::trim_meetings() {
+  constexpr int kMost = 10;
+  std::map<KeyframeId, int> newer;
+  const auto count = [&](const Meeting& meeting) {
+    const int at_place = newer[meeting.place]++, at_keyframe = newer[meeting.keyframe]++;
+    return std::min(at_place, at_keyframe) < kMost;
+  };
+  std::vector<Meeting> kept;
+  std::ranges::copy_if(meetings_ | std::views::reverse, std::back_inserter(kept), count);
+  meetings_.assign(kept.rbegin(), kept.rend());
+}
+
 bool Atlas::straighten() {
   bool moved = false;
+  if (!crooked_.empty()) trim_meetings();
   for (const auto& [world, robot] : std::exchange(crooked_, {})) moved = straighten_world(world, robot) || moved;
   if (!moved) return false;
   ++counters_.corrections;
@@ -195,10 +209,11 @@ Eigen::Isometry3d Atlas::fit_map(const Robot& robot, const Announced& newest) co
   const MapId world = world_of(newest.keyframe);
   constexpr int kKeyframes = 10;
   std::vector<std::pair<const Eigen::Isometry3d*, const Eigen::Isometry3d*>> poses;  // here, of the robot
-  for (const auto& [id, announced] : robot.keyframes | std::views::reverse) {
-    const Keyframe* keyframe = map_.find_keyframe(announced.keyframe);
-    if (keyframe == nullptr || announced.map != newest.map || worlds_.at(keyframe->map) != world) continue;
-    poses.emplace_back(&keyframe->T_world_camera, &announced.T_robot_camera);
+  for (const KeyframeId id : robot.here | std::views::reverse) {
+    const Announced& announced = robot.keyframes.at(id);
+    const Keyframe& keyframe = *map_.find_keyframe(announced.keyframe);
+    if (announced.map != newest.map || worlds_.at(keyframe.map) != world) continue;
+    poses.emplace_back(&keyframe.T_world_camera, &announced.T_robot_camera);
     if (poses.size() == kKeyframes) break;
   }
   const Eigen::Quaterniond first(poses.front().first->linear() * poses.front().second->linear().transpose());

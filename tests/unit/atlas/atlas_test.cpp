@@ -116,6 +116,35 @@ TEST(Atlas, old_keyframes_of_a_place_give_way_to_newer_ones) {
   EXPECT_EQ(atlas.map().check_invariants(), "");
 }
 
+TEST(Atlas, what_is_beyond_the_most_keyframes_is_not_asked_for_again) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig config;
+  config.most_keyframes = 5;
+  config.settled_after = 0;
+  Atlas atlas(config);
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(300, atlas);
+  EXPECT_EQ(atlas.map().keyframes().size(), 5U);
+  EXPECT_TRUE(atlas.missing("anna", 100).keyframe_ids.empty()) << "or the oldest would come and go for ever";
+  EXPECT_EQ(robot_in(atlas.state(), "anna").missing, 0U);
+}
+
+TEST(Atlas, what_gave_way_to_a_robot_that_is_forgotten_is_wanted_again) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig config;
+  config.cell_keyframes = 1;
+  config.settled_after = 0;
+  Atlas atlas(config);
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 600);
+  anna.walk(300, atlas);
+  const std::uint32_t alone = robot_in(atlas.state(), "anna").keyframes;
+  bert.walk(600, atlas);
+  ASSERT_LT(robot_in(atlas.state(), "anna").keyframes, alone) << "the rest gave way to newer ones of bert";
+  atlas.forget("bert");
+  anna.teller().report(atlas);
+  EXPECT_GE(robot_in(atlas.state(), "anna").keyframes, alone);
+}
+
 TEST(Atlas, a_robot_with_a_false_map_bends_no_other_map) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas atlas({});
