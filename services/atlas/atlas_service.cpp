@@ -151,7 +151,7 @@ void AtlasService::take(const Arrival& arrival) {
   const auto lane = lanes_.find(arrival.robot);
   if (lane == lanes_.end()) return;
   if (const auto* update = std::get_if<Update>(&arrival.message)) {
-    atlas_->follow(arrival.robot, **update);
+    atlas_->follow(arrival.robot, **update, service::realtime_ns());
     return;
   }
   const msg::KeyframeFeatures& features = *std::get<Features>(arrival.message);

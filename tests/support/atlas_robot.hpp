@@ -41,7 +41,7 @@ class AtlasTeller {
     for (msg::MapUpdate& update : slam::make_map_updates(view, news)) {
       update.session_ns = session_ns;
       update.revision = ++revision_;
-      atlas.follow(name_, update);
+      atlas.follow(name_, update, view.keyframes.back().stamp_ns + clock_behind_ns);
     }
     for (const std::uint32_t id : atlas.missing(name_, 100).keyframe_ids) {
       msg::KeyframeFeatures features =
@@ -62,7 +62,8 @@ class AtlasTeller {
   }
 
   std::int64_t session_ns = 1;
-  std::size_t bytes_sent = 0;  ///< of features
+  std::int64_t clock_behind_ns = 0;  ///< of the robot
+  std::size_t bytes_sent = 0;        ///< of features
   int keyframes_taken = 0;
   std::vector<double> add_s, straighten_s;  ///< what the atlas took for each, CPU
 
@@ -96,7 +97,7 @@ class AtlasRobot {
     for (int i = 0; i < frames; ++i) {
       const std::uint64_t seq = first_ + seen_++;
       const auto frame = world_.view(seq);
-      frame->stamp_ns += static_cast<std::int64_t>(first_);  // robots have clocks of their own
+      frame->stamp_ns += static_cast<std::int64_t>(first_) - teller_.clock_behind_ns;  // robots have their own clocks
       const slam::SlamOutput output = slam_.process(*frame);
       if (seen_ == 1) T_map_first_ = output.result.T_world_camera;
       if (seen_ % 15 == 0) teller_.report(atlas);

@@ -258,7 +258,7 @@ ScaleResult run_scale_trial(const OfflineOptions& source, int robots, int second
       const msg::KeyframeFeatures features = walker.features(step);
       came_s.push_back(kStep_s * (step + static_cast<double>(came_s.size()) / robots));
       worker.work(came_s.back(), [&] {
-        atlas.follow(walker.name(), update);
+        atlas.follow(walker.name(), update, update.keyframes.front().stamp_ns);
         atlas.add(walker.name(), features);
       });
     }

@@ -88,7 +88,7 @@ bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
   announced.keyframe = map_.add_keyframe(frame, T_world_camera, parent == nullptr ? kNoKeyframe : parent->keyframe);
   const Keyframe& keyframe = *map_.find_keyframe(announced.keyframe);
   worlds_.try_emplace(keyframe.map, keyframe.map);
-  sources_[keyframe.id] = {name, message.keyframe_id};
+  sources_[keyframe.id] = {name, message.keyframe_id, robot.behind_s};
   robot.here.insert(message.keyframe_id);
   robot.wanted.erase(message.keyframe_id);
   by_stamp_.emplace(message.stamp_ns, keyframe.id);
@@ -153,16 +153,20 @@ void Atlas::sort_into_cells() {
 void Atlas::give_way(KeyframeId newest) {
   const Keyframe& keyframe = *map_.find_keyframe(newest);
   const std::vector<KeyframeId>& cell = cells_[cell_of(worlds_.at(keyframe.map), keyframe.T_world_camera)];
-  if (static_cast<int>(map_.keyframes().size()) > config_.most_keyframes) {
-    ++counters_.given_way;
-    drop(by_stamp_.begin()->second);
-    return;
+  std::vector<std::pair<double, KeyframeId>> oldest;
+  std::size_t too_many = 0;
+  const auto most = static_cast<std::size_t>(config_.most_keyframes);
+  if (sources_.size() > most) {
+    too_many = sources_.size() - most + most / 100;  // at once: to find them takes long
+    for (const auto& [id, source] : sources_) oldest.emplace_back(seen_s(id), id);
+  } else if (cell.size() > static_cast<std::size_t>(config_.cell_keyframes)) {
+    too_many = 1;
+    for (const KeyframeId id : cell) oldest.emplace_back(seen_s(id), id);
   }
-  if (static_cast<int>(cell.size()) <= config_.cell_keyframes) return;
-  const KeyframeId oldest =
-      *std::ranges::min_element(cell, {}, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns; });
-  ++counters_.given_way;
-  drop(oldest);
+  std::ranges::partial_sort(oldest, oldest.begin() + static_cast<std::ptrdiff_t>(too_many));
+  oldest.resize(too_many);
+  counters_.given_way += too_many;
+  for (const auto& [seen_s, id] : oldest) drop(id);
 }
 
 /// What met a keyframe that goes has met its heir.

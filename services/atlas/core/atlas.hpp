@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -80,8 +81,9 @@ class Atlas {
   /// Whose keyframes those of contents() are.
   std::map<std::string, std::vector<KeyframeId>> owners() const;
 
-  /// Which keyframes a robot has and where they are in its own map.
-  void follow(const std::string& robot, const msg::MapUpdate& update);
+  /// Which keyframes a robot has and where they are in its own map. `now_ns`: when this came, by one clock for all:
+  /// those of robots may be days wrong, and which keyframe is newer must not depend on them.
+  void follow(const std::string& robot, const msg::MapUpdate& update, std::int64_t now_ns);
   /// Those whose features are wanted, the newest first; at most `limit`. What has given way, to newer ones of its place
   /// or because there is too much, is not wanted again until a robot is forgotten.
   msg::KeyframeRequest missing(const std::string& robot, std::size_t limit);
@@ -106,6 +108,7 @@ class Atlas {
   bool is_joined(KeyframeId keyframe) const;
 
  private:
+  static constexpr double kUnknown_s = std::numeric_limits<double>::infinity();
   /// A keyframe that a robot has.
   struct Announced {
     Eigen::Isometry3d T_robot_camera = Eigen::Isometry3d::Identity();  ///< in the robot's own map
@@ -123,6 +126,7 @@ class Atlas {
   };
   struct Robot {
     std::int64_t session_ns = 0;
+    double behind_s = kUnknown_s;                             ///< that its clock is behind, at most
     std::map<KeyframeId, Announced> keyframes;                ///< by its own ids
     std::set<KeyframeId> here, wanted;                        ///< of these; the others have given way
     std::unordered_map<std::uint32_t, LandmarkId> landmarks;  ///< by its own ids
@@ -135,6 +139,7 @@ class Atlas {
   struct Source {
     std::string robot;
     KeyframeId id = slam::kNoKeyframe;  ///< of the robot
+    double behind_s = kUnknown_s;       ///< Robot::behind_s when it came; unknown for what was restored
   };
   using Cell = std::array<int, 6>;  ///< world, place, viewing direction
 
@@ -145,7 +150,9 @@ class Atlas {
   static const Announced* newest_known(const Robot& robot);
   std::set<KeyframeId>::const_iterator settled_end(const Robot& robot) const;
   Eigen::Isometry3d fit_map(const Robot& robot, const Announced& newest) const;
-  bool is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const;
+  double seen_s(KeyframeId keyframe) const;
+  bool is_wanted(const Robot& robot, const Announced& announced, const Eigen::Isometry3d& T_world_robot,
+                 MapId world) const;
   void forget_landmarks(Robot& robot) const;
   void see_landmark(Robot& robot, const slam::Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id);
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);
@@ -173,7 +180,7 @@ class Atlas {
   slam::KeyframeDatabase places_;
   std::map<MapId, MapId> worlds_;  ///< component -> the oldest one that it shares a frame with
   std::map<KeyframeId, Source> sources_;
-  std::multimap<std::int64_t, KeyframeId> by_stamp_;
+  std::multimap<std::int64_t, KeyframeId> by_stamp_;  ///< of the robot's clock
   std::map<Cell, std::vector<KeyframeId>> cells_;
   std::map<std::string, Robot> robots_;
   std::vector<Meeting> meetings_;

@@ -5,6 +5,7 @@
 #include <ranges>
 
 #include "common/geometry/se3.hpp"
+#include "common/msg/stamps.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/atlas/core/atlas.hpp"
 
@@ -32,7 +33,16 @@ KeyframeId Atlas::find_known(const std::string& robot, KeyframeId id, std::int64
   return kNoKeyframe;
 }
 
-void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
+/// When a keyframe was seen, by the clock of follow(). What was restored counts by the clock that its robot has now.
+double Atlas::seen_s(KeyframeId id) const {
+  const Source& source = sources_.at(id);
+  double behind_s = source.behind_s;
+  if (behind_s == kUnknown_s)
+    if (const auto robot = robots_.find(source.robot); robot != robots_.end()) behind_s = robot->second.behind_s;
+  return msg::minus_s(map_.find_keyframe(id)->frame->stamp_ns, 0) + (behind_s == kUnknown_s ? 0 : behind_s);
+}
+
+void Atlas::follow(const std::string& name, const msg::MapUpdate& update, std::int64_t now_ns) {
   Robot& robot = robots_[name];
   if (robot.session_ns != update.session_ns) {
     const std::uint32_t meetings = robot.meetings;
@@ -44,6 +54,7 @@ void Atlas::follow(const std::string& name, const msg::MapUpdate& update) {
     if ((entry.content & msg::kMapRemoved) != 0) {
       withdraw(name, robot, entry.keyframe_id);
     } else if (robot.keyframes.size() < kMostAnnounced || robot.keyframes.contains(entry.keyframe_id)) {
+      robot.behind_s = std::min(robot.behind_s, msg::minus_s(now_ns, entry.stamp_ns));
       follow(name, robot, entry);
     }
   }
@@ -91,11 +102,12 @@ std::set<KeyframeId>::const_iterator Atlas::settled_end(const Robot& robot) cons
 }
 
 /// Whether newer keyframes do not show the same place already.
-bool Atlas::is_wanted(const Announced& announced, const Eigen::Isometry3d& T_world_robot, MapId world) const {
+bool Atlas::is_wanted(const Robot& robot, const Announced& announced, const Eigen::Isometry3d& T_world_robot,
+                      MapId world) const {
   const auto cell = cells_.find(cell_of(world, T_world_robot * announced.T_robot_camera));
   if (cell == cells_.end()) return true;
-  const auto newer = std::ranges::count_if(
-      cell->second, [&](KeyframeId id) { return map_.find_keyframe(id)->frame->stamp_ns > announced.stamp_ns; });
+  const double own_s = msg::minus_s(announced.stamp_ns, 0) + robot.behind_s;
+  const auto newer = std::ranges::count_if(cell->second, [&](KeyframeId id) { return seen_s(id) > own_s; });
   return newer < config_.cell_keyframes;
 }
 
@@ -111,7 +123,7 @@ msg::KeyframeRequest Atlas::missing(const std::string& name, std::size_t limit) 
   if (known != nullptr) T_world_robot = known->T_world_camera * newest->T_robot_camera.inverse();
   for (auto id = settled_end(robot); id != robot.wanted.begin() && request.keyframe_ids.size() < limit;) {
     --id;
-    if (known != nullptr && !is_wanted(robot.keyframes.at(*id), T_world_robot, worlds_.at(known->map))) {
+    if (known != nullptr && !is_wanted(robot, robot.keyframes.at(*id), T_world_robot, worlds_.at(known->map))) {
       id = robot.wanted.erase(id);
     } else {
       request.keyframe_ids.push_back(*id);

@@ -116,6 +116,21 @@ TEST(Atlas, old_keyframes_of_a_place_give_way_to_newer_ones) {
   EXPECT_EQ(atlas.map().check_invariants(), "");
 }
 
+TEST(Atlas, keyframes_of_a_robot_whose_clock_is_days_ahead_give_way_too) {
+  constexpr std::int64_t kDaysNs = 3LL * 24 * 3600 * 1'000'000'000;
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig config;
+  config.cell_keyframes = 1;
+  config.settled_after = 0;
+  Atlas atlas(config);
+  AtlasRobot ahead("ahead", world, 0), later("later", world, 600);
+  ahead.teller().clock_behind_ns = -kDaysNs;
+  ahead.walk(300, atlas);
+  const std::uint32_t alone = robot_in(atlas.state(), "ahead").keyframes;
+  later.walk(600, atlas);
+  EXPECT_LT(robot_in(atlas.state(), "ahead").keyframes, alone);
+}
+
 TEST(Atlas, what_is_beyond_the_most_keyframes_is_not_asked_for_again) {
   const FeatureWorld world = FeatureWorld::noisy();
   AtlasConfig config;
@@ -163,7 +178,7 @@ TEST(Atlas, a_robot_with_a_false_map_bends_no_other_map) {
     T.translation() *= 1.0 + keyframe.id;
     entry.T_world_camera = msg::to_message(T);
   }
-  atlas.follow("bert", lies);
+  atlas.follow("bert", lies, lies.keyframes.back().stamp_ns);
   atlas.straighten();
   EXPECT_LT((atlas.map().keyframes().begin()->second.T_world_camera.inverse() * before).translation().norm(), 1e-6);
   EXPECT_LT(error_m(atlas, anna, anna), 0.01);
