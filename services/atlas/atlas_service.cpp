@@ -324,13 +324,24 @@ void AtlasService::checkpoint() {
 void AtlasService::save_changes() {
   if (config_.map_file.empty() || saved_ == atlas_->revision()) return;
   try {
-    save(config_.map_file, io::NamedBy::kOperator);
+    if (atlas_->map().empty()) {
+      remove_map();
+    } else {
+      save(config_.map_file, io::NamedBy::kOperator);
+    }
     saved_ = atlas_->revision();
     trouble_.clear();
   } catch (const std::exception& error) {
     trouble_ = error.what();
     SPDLOG_ERROR("event=map_not_saved cause=\"{}\"", trouble_);
   }
+}
+
+/// The only robot was forgotten: what the file holds is true no more, and a restart begins as without one.
+void AtlasService::remove_map() {
+  std::filesystem::remove(config_.map_file);
+  std::filesystem::remove(owners_file(config_.map_file));
+  SPDLOG_INFO("event=map_removed file={} cause=\"no keyframe is left\"", config_.map_file);
 }
 
 service::ExitCode AtlasService::finish() {

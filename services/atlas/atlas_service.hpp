@@ -109,6 +109,7 @@ class AtlasService {
   bus::CommandAnswer forget(const std::string& robot);
   void checkpoint();
   void save_changes();
+  void remove_map();
   service::ExitCode finish();
 
   const Config config_;

@@ -208,8 +208,10 @@ void Atlas::drop(KeyframeId id) {
   ++revision_;
   places_.remove(id);
   sources_.erase(id);
+  const MapId component = keyframe.map;
   map_.forget_removed(0);
   map_.remove_keyframe(id);
+  if (map_.keyframe_count(component) == 0) worlds_.erase(component);  // or the next world would never be that of `map`
 }
 
 std::size_t Atlas::forget(const std::string& name) {
@@ -221,7 +223,6 @@ std::size_t Atlas::forget(const std::string& name) {
   for (auto& [other, robot] : robots_)  // what gave way to its keyframes
     for (const auto& [id, announced] : robot.keyframes)
       if (!robot.here.contains(id)) robot.wanted.insert(id);
-  std::erase_if(worlds_, [&](const auto& world) { return map_.keyframe_count(world.first) == 0; });
   return gone.size();
 }
 

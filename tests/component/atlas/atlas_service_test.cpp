@@ -138,6 +138,14 @@ TEST_F(AtlasServiceTest, saves_the_map_and_forgets_a_robot) {
   EXPECT_GT(without, 0U);
 }
 
+TEST_F(AtlasServiceTest, a_map_whose_robots_are_all_forgotten_has_no_file) {
+  let_them_meet();
+  EXPECT_TRUE(call("atlas/save", "").success);
+  for (const char* robot : {"anna", "bert"}) EXPECT_TRUE(call("atlas/forget", robot).success);
+  EXPECT_EQ(stop(), service::kOk);
+  EXPECT_TRUE(std::filesystem::is_empty(folder_)) << "also whose keyframes they were";
+}
+
 TEST_F(AtlasServiceTest, continues_with_the_map_that_it_saved) {
   let_them_meet();
   EXPECT_TRUE(call("atlas/save", "").success);

@@ -83,6 +83,24 @@ TEST(Atlas, a_robot_can_be_taken_out_with_all_it_brought) {
   EXPECT_EQ(atlas.forget("dora"), 0U);
 }
 
+TEST(Atlas, the_frame_is_that_of_the_oldest_world_that_is_left) {
+  const FeatureWorld world = FeatureWorld::noisy(1), other = FeatureWorld::noisy(2);
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", other, 250);
+  anna.walk(150, atlas);
+  bert.walk(150, atlas);
+  ASSERT_FALSE(robot_in(atlas.state(), "bert").met);
+  msg::MapUpdate removal;  // by anna itself, of all that it had
+  removal.session_ns = anna.teller().session_ns;
+  for (const slam::KeyframeView& keyframe : anna.slam().map_view().keyframes) {
+    removal.keyframes.emplace_back().keyframe_id = keyframe.id;
+    removal.keyframes.back().content = msg::kMapRemoved;
+  }
+  atlas.follow("anna", removal, 0);
+  EXPECT_TRUE(robot_in(atlas.state(), "bert").met);
+  EXPECT_FALSE(atlas.contents().keyframes.empty());
+}
+
 TEST(Atlas, a_map_that_was_saved_continues_with_the_same_robots) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas before({});
