@@ -189,11 +189,13 @@ ViewerService::ViewerService(const Config& config, service::Runtime& runtime)
   raw_ = bus::connect_raw(raw_options(runtime_));
   topics_.emplace(*raw_, foxglove_, *dispatcher_, config_.topics, [this] { robots_changed_ = true; });
   if (!config_.read_only) commands_.emplace(runtime_.bus_options, *dispatcher_);
+  read_atlas();
 }
 
 /// What the bus's threads have posted runs before the server ends, so the feeds are there until then.
 ViewerService::~ViewerService() {
   commands_.reset();
+  atlas_ = {};
   robots_.clear();
   topics_->stop();
   server_.reset();
@@ -244,6 +246,20 @@ std::vector<WatchedService> ViewerService::watched_services() const {
     for (page::ServiceLine& line : feed->mirror().services(service::monotonic_ns()))
       all.push_back({name, std::move(line)});
   return all;
+}
+
+/// Where the robots of a building are; in a keystore without an atlas it may not be read.
+void ViewerService::read_atlas() {
+  try {
+    shared_ = runtime_.bus.of_robot("");
+    atlas_ = shared_->reader(bus::topics::kAtlas, [this](std::shared_ptr<const msg::AtlasState> state) {
+      std::string text = page::atlas(*state);
+      const std::size_t bytes = text.size();
+      dispatcher_->deliver([this, text = std::move(text)] { page_.set_atlas(text); }, bytes);
+    });
+  } catch (const bus::BusError& error) {
+    SPDLOG_WARN("event=not_read topic={} cause=\"{}\"", bus::topics::kAtlas.name, error.what());
+  }
 }
 
 /// The robot that was asked for, or every one that has topics.

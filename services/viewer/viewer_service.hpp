@@ -83,6 +83,7 @@ class ViewerService {
   std::unique_ptr<Session> open(const std::string& subprotocol, Rights rights);
   Reports reports() const;
   std::vector<WatchedService> watched_services() const;
+  void read_atlas();
   void find_robots();
   void apply_options();
   void refresh(std::int64_t now_ns);
@@ -103,6 +104,8 @@ class ViewerService {
   std::optional<TopicFeed> topics_;
   std::optional<CommandQueue> commands_;  ///< none: read-only
   std::map<std::string, std::unique_ptr<RobotFeed>> robots_;
+  std::shared_ptr<bus::Bus> shared_;  ///< without a robot's name
+  bus::Reader<msg::AtlasState> atlas_;
   bool robots_changed_ = true;
   std::int64_t refreshed_ns_ = 0;
 };

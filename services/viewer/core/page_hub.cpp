@@ -28,6 +28,12 @@ RobotMirror* PageHub::robot(const std::string& name) {
   return mirrors_.back().get();
 }
 
+void PageHub::set_atlas(std::string json) {
+  const auto bytes = std::as_bytes(std::span(json));
+  if (atlas_.payload && std::ranges::equal(*atlas_.payload, bytes)) return;
+  atlas_ = {atlas_.revision + 1, std::make_shared<const Bytes>(bytes.begin(), bytes.end())};
+}
+
 std::optional<PageOptions> PageHub::options(std::uint8_t robot) const {
   if (sessions_.empty()) return std::nullopt;
   PageOptions all = PageOptions::nothing();

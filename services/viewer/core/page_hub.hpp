@@ -72,6 +72,8 @@ class PageHub {
   std::unique_ptr<Session> open(Rights rights = Rights::kControl);
   /// The mirror of a robot; known ones keep their index. Null when there are too many.
   RobotMirror* robot(const std::string& name);
+  /// What page::atlas() says.
+  void set_atlas(std::string json);
   /// What any page wants of a robot; nothing without pages.
   std::optional<PageOptions> options(std::uint8_t robot) const;
   std::size_t clients() const { return sessions_.size(); }
@@ -85,6 +87,7 @@ class PageHub {
   const PageLimits limits_;
   const Hooks hooks_;
   std::vector<std::string> names_;
+  RobotMirror::Message atlas_;
   std::vector<std::unique_ptr<RobotMirror>> mirrors_;
   std::set<PageSession*> sessions_;
 };

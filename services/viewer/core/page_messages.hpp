@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 
+#include "common/msg/atlas.hpp"
 #include "common/msg/features.hpp"
 #include "common/msg/movers.hpp"
 #include "common/msg/ros.hpp"
@@ -104,6 +105,8 @@ std::string commands(std::uint8_t robot, std::span<const CommandInfo> commands);
 std::string truth_error(std::uint8_t robot, double ate_m, std::size_t frames);
 std::string map_reset(std::uint8_t robot);
 std::string robots(std::span<const std::string> names);
+/// Where the robots of an atlas are in its map.
+std::string atlas(const msg::AtlasState& state);
 std::string answer(std::uint64_t id, const CommandResult& result);
 
 }  // namespace rtd::viewer::page

@@ -154,6 +154,10 @@ std::optional<Frame> PageSession::next_frame(std::int64_t now_ns) {
     robots_sent_ = hub_.names_.size();
     return text_frame(page::robots(hub_.names_));
   }
+  if (atlas_sent_ != hub_.atlas_.revision) {
+    atlas_sent_ = hub_.atlas_.revision;
+    return shared_frame(true, hub_.atlas_.payload);
+  }
   if (auto report = link_report(now_ns)) return report;
   return next_of_robots(now_ns);
 }

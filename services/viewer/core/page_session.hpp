@@ -91,6 +91,7 @@ class PageSession : public Session {
   bool ready_ = false;
   std::optional<std::uint64_t> watched_;      ///< whose images the page shows; none: those of all robots
   std::map<std::size_t, Sent> sent_;          ///< by the robot's index
+  std::uint64_t atlas_sent_ = 0;              ///< its revision
   std::size_t robots_sent_ = 0, served_ = 0;  ///< served_: whose message was the last one
   TokenBucket all_, views_;
   std::int64_t reported_ns_ = 0;

@@ -160,6 +160,17 @@ std::string robots(std::span<const std::string> names) {
   return json_line({{"type", "robots"}, {"robots", std::move(list)}});
 }
 
+std::string atlas(const msg::AtlasState& state) {
+  json list = json::array();
+  for (const msg::AtlasRobot& robot : state.robots) {
+    list.push_back({{"name", robot.name}, {"met", robot.met}, {"map", nullptr}, {"camera", nullptr}});
+    if (!robot.met) continue;
+    list.back()["map"] = pose(robot.T_map_robot);
+    list.back()["camera"] = pose(robot.T_map_camera);
+  }
+  return json_line({{"type", "atlas"}, {"robots", std::move(list)}});
+}
+
 std::string answer(std::uint64_t id, const CommandResult& result) {
   return json_line({{"type", "answer"}, {"id", id}, {"success", result.success}, {"message", result.message}});
 }

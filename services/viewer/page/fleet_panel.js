@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 
-// All robots at a glance, when there are several: a row of figures for each. A click goes to one.
+// All robots at a glance, when there are several: a row of figures for each. A click goes to one. Below, who has met in
+// the joint map of an atlas.
 
 import { byId, el, setText } from "./dom.js";
 import { count, length, ms } from "./format.js";
@@ -18,7 +19,9 @@ export class FleetPanel {
 
   update(session, selected, connection, now_ms) {
     const robots = session.byName;
-    byId("panel-fleet").hidden = document.querySelector("[data-panel=fleet]").hidden = robots.length < 2;
+    byId("panel-fleet").hidden = document.querySelector("[data-panel=fleet]").hidden = robots.length < 2 && session.atlas.length === 0;
+    this.#list(session.atlas);
+    byId("fleet").hidden = robots.length < 2;
     if (robots.length < 2) return;
     const key = robots.map(({ index, name }) => `${index} ${name}`).join();
     if (key !== this.key) this.#build(robots);
@@ -39,12 +42,24 @@ export class FleetPanel {
     byId("fleet").replaceChildren(head, ...rows);
   }
 
+  #list(robots) {
+    const lines = meetings(robots), text = lines.join("\n");
+    if (text === this.listed) return;
+    this.listed = text;
+    byId("joint-map").replaceChildren(...lines.map((line) => el("li", {}, line)));
+  }
+
   #fill(robot, session, selected, connection, now_ms) {
     const { row, cells } = this.rows.get(robot.index), report = situation({ connection, hello: session.hello, robot, now_ms });
     figures(robot, report.title).forEach((text, i) => setText(cells[i], text));
     row.dataset.level = report.level;
     row.classList.toggle("selected", robot.index === selected);
   }
+}
+
+/** Who of the robots of an atlas is in its map: a line for each. */
+export function meetings(robots) {
+  return robots.map(({ name, met }) => `${name || "robot"}: ${met ? "met" : "not met"}`);
 }
 
 /** One text for each of the figures. title: of its state. */

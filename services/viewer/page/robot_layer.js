@@ -28,7 +28,8 @@ export class RobotLayer {
     this.camera = new THREE.LineSegments(geometry, look.cameraMaterial);
     this.camera.visible = false;
     this.movers = new THREE.Group();
-    this.group.add(this.camera, this.movers);
+    this.companions = new THREE.Group();
+    this.group.add(this.camera, this.movers, this.companions);
   }
 
   /** True if the picture is another one now. */
@@ -37,6 +38,7 @@ export class RobotLayer {
     changed = this.#syncMaps() || changed;
     for (const layer of this.layers.values()) changed = layer.update(now_ms) || changed;
     changed = this.#updateCamera() || changed;
+    changed = this.#updateCompanions() || changed;
     return this.#updateMovers() || changed;
   }
 
@@ -80,6 +82,11 @@ export class RobotLayer {
     this.#putAbove(this.name, map.bounds);
   }
 
+  /** The other robots in its map. */
+  showCompanions(shown) {
+    this.companions.visible = shown;
+  }
+
   /** A label at the upper far edge of a box: above it both from behind and from above. */
   #putAbove(label, { min, max }) {
     const x = (min[0] + max[0]) / 2;
@@ -89,7 +96,7 @@ export class RobotLayer {
 
   /** Texts in the scene, see spreadLabels(). */
   labels() {
-    return [this.name, ...this.movers.children].filter((object) => object?.isSprite);
+    return [this.name, ...this.movers.children, ...(this.companions.visible ? this.companions.children : [])].filter((object) => object?.isSprite);
   }
 
   /** T_scene_camera of the newest pose, or null. */
@@ -122,7 +129,7 @@ export class RobotLayer {
 
   show(visible) {
     this.visible = visible;
-    this.drawnMovers = null;   // colours and sizes may be others
+    this.drawnMovers = this.drawnCompanions = null;   // colours and sizes may be others
     for (const layer of this.layers.values()) layer.show(visible);
     this.movers.visible = visible.movers;
   }
@@ -170,6 +177,24 @@ export class RobotLayer {
     this.camera.position.set(x, y, z).add(map?.group.position ?? new THREE.Vector3());
     this.camera.quaternion.set(qx, qy, qz, qw);
     this.camera.visible = true;
+    return true;
+  }
+
+  /** Other robots in the map that this one is in now: as its own camera, each with its name. */
+  #updateCompanions() {
+    const map = this.layers.get(this.robot.tracking?.map ?? 0);
+    this.companions.position.copy(map?.group.position ?? new THREE.Vector3());
+    if (this.robot.companions === this.drawnCompanions) return false;
+    this.drawnCompanions = this.robot.companions;
+    this.companions.remove(...this.companions.children);
+    for (const { name, pose: [x, y, z, ...rotation] } of this.robot.companions) {
+      const marker = new THREE.LineSegments(this.camera.geometry, this.look.truthMaterial);
+      marker.position.set(x, y, z);
+      marker.quaternion.set(...rotation);
+      const sprite = textSprite(name || "robot", this.look.truthMaterial.color, this.look);
+      sprite.position.copy(marker.position);
+      this.companions.add(marker, sprite);
+    }
     return true;
   }
 

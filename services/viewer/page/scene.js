@@ -318,6 +318,7 @@ export class Scene {
     for (const robot of order) {
       at_m = robot.arrange(at_m, robot !== order[0], this.settings.hiddenMaps) + kRobotGap_m;
       robot.showName(order.length > 1);
+      robot.showCompanions(robot === order[0]);
       this.#include(robot);
     }
     this.#drawGrid();

@@ -3,6 +3,7 @@
 
 // Everything the server has sent since the connection was opened. Pure data: messages in, state out; no DOM, no clock.
 
+import { companionsOf } from "./atlas.js";
 import { EventLog } from "./event_log.js";
 import { History } from "./history.js";
 import { MapState } from "./world.js";
@@ -29,6 +30,7 @@ export class RobotState {
     this.services = [];
     this.deaths = new Map();  // how often each service was restarted without having ended
     this.movers = [];
+    this.companions = [];   // other robots in its map: {name, pose}
     this.commands = [];
     this.playback = null;
     this.truthError = null;
@@ -132,6 +134,7 @@ export class Session {
     this.hello = null;
     this.link = null;
     this.robots = new Map();
+    this.atlas = [];          // robots of the message `atlas`
     this.announced = false;   // whether the list of robots has come
     this.generation = 0;      // counts the robots and maps that came or went
   }
@@ -161,6 +164,7 @@ export class Session {
       case "hello": [this.hello, this.helloAt_ms] = [message, now_ms]; break;
       case "link": this.link = message; break;
       case "robots": this.#setRobots(message.robots); break;
+      case "atlas": this.atlas = message.robots; this.#placeCompanions(); break;
       case "map_reset": robot().forgetMaps(); this.generation += 1; break;
       case "tracking": robot().setTracking(message, this.#readyAt_ms(message, now_ms)); break;
       case "status": robot().setServices(message.services); break;
@@ -200,6 +204,11 @@ export class Session {
     for (const index of [...this.robots.keys()]) {
       if (!there.has(index)) this.robots.delete(index);
     }
+    this.#placeCompanions();
     this.generation += 1;
+  }
+
+  #placeCompanions() {
+    for (const robot of this.robots.values()) robot.companions = companionsOf(this.atlas, robot.name);
   }
 }

@@ -80,6 +80,15 @@ std::string image_messages() {
          fmt::format("depth {}\n", hex(page::image(1, sample<msg::CompressedImage>(3), page::Kind::kDepth)));
 }
 
+/// One robot that has met and one that has not.
+msg::AtlasState atlas() {
+  msg::AtlasState state;
+  state.robots = {{.name = "anna", .met = true}, {.name = "bert"}};
+  state.robots[0].T_map_robot = {{1, 2, 3}, {0, 0, 0, 1}};
+  state.robots[0].T_map_camera = {{4, 5, 6}, {0, 0, 1, 0}};
+  return state;
+}
+
 std::string texts() {
   const page::ServiceLine line{sample<msg::ServiceStatus>(4), 12.5};
   const CommandInfo command{"/slam/reset", ArgumentKind::kNone};
@@ -90,7 +99,7 @@ std::string texts() {
         page::boxes(1, sample<msg::Detection2DArray>(6)), page::movers(1, sample<msg::Movers>(7), std::vector<bool>(9)),
         page::playback(1, {.position_s = 1, .length_s = 2}), page::services(1, std::span(&line, 1)),
         page::commands(1, std::span(&command, 1)), page::truth_error(1, 0.25, 10), page::map_reset(1),
-        page::robots(robots), page::answer(5, {true, "done"})})
+        page::robots(robots), page::answer(5, {true, "done"}), page::atlas(atlas())})
     all += text + '\n';
   return all;
 }

@@ -16,6 +16,7 @@ using nlohmann::json;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Key;
 using ::testing::Not;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
@@ -127,6 +128,17 @@ TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
   robot.map().add(map_of(50, 100));
   const auto again = take(*page, kSecond + 2);
   EXPECT_FALSE(again.contains("binary 1")) << "no keyframe has moved";
+}
+
+TEST_F(PageSessionTest, a_page_gets_what_an_atlas_says_once_for_each_change) {
+  const auto page = hub.open();
+  EXPECT_THAT(take(*page, kSecond), Not(Contains(Key("atlas")))) << "there is none";
+  hub.set_atlas(R"({"type":"atlas","robots":[]})");
+  EXPECT_THAT(take(*page, kSecond), Contains(Key("atlas")));
+  hub.set_atlas(R"({"type":"atlas","robots":[]})");
+  EXPECT_THAT(take(*page, kSecond), Not(Contains(Key("atlas")))) << "it is the same";
+  const auto late = hub.open();
+  EXPECT_THAT(take(*late, kSecond), Contains(Key("atlas")));
 }
 
 TEST_F(PageSessionTest, a_page_gets_the_depth_when_it_asks_for_it_and_shows_images) {
