@@ -21,18 +21,11 @@ Column judge(const Volume& volume, int z, Space space, double floor_m, const Rob
   return height_m > 0 && height_m < heights.clear_below_m ? Column::kClear : Column::kNothing;
 }
 
-/// The cells with a column that counts, inclusive; at most `max_cells`.
-Eigen::AlignedBox2i extent(const Volume& volume, double floor_m, const RobotHeights& heights, std::size_t max_cells,
-                           bool& cropped) {
-  Eigen::AlignedBox2i box;
-  volume.cells.for_each([&](const Eigen::Vector3i& cell, Space space) {
-    if (judge(volume, cell.z(), space, floor_m, heights) != Column::kNothing) box.extend(cell.head<2>());
-  });
-  if (box.isEmpty()) return box;
+/// True when the box has more than `max_cells`, and now no more.
+bool crop(Eigen::AlignedBox2i& box, std::size_t max_cells) {
   const auto side = [&](int axis) { return std::int64_t{box.max()[axis]} - box.min()[axis] + 1; };
   const auto most = static_cast<std::int64_t>(max_cells);
-  if (side(0) * side(1) <= most) return box;
-  cropped = true;
+  if (side(0) * side(1) <= most) return false;
   const auto half = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::sqrt(static_cast<double>(most))) / 2);
   for (int axis = 0; axis < 2; ++axis) {  // a long corridor keeps its length
     const std::int64_t allowed = std::max(2 * half, most / side(1 - axis));
@@ -41,10 +34,29 @@ Eigen::AlignedBox2i extent(const Volume& volume, double floor_m, const RobotHeig
     box.min()[axis] = middle - static_cast<int>(allowed / 2);
     box.max()[axis] = box.min()[axis] + static_cast<int>(allowed) - 1;
   }
-  return box;
+  return true;
 }
 
 }  // namespace
+
+NavigationGrid NavigationGrid::unknown(Eigen::AlignedBox2i box, double cell_m, std::size_t max_cells) {
+  NavigationGrid grid;
+  grid.cell_m = cell_m;
+  if (box.isEmpty()) return grid;
+  grid.cropped = crop(box, max_cells);
+  grid.first = box.min();
+  grid.columns = box.max().x() - box.min().x() + 1;
+  grid.rows = box.max().y() - box.min().y() + 1;
+  grid.cells.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows), kUnknown);
+  return grid;
+}
+
+void NavigationGrid::mark(const Eigen::Vector2i& cell, std::int8_t value) {
+  const Eigen::Vector2i at = cell - first;
+  auto& known =
+      cells[static_cast<std::size_t>(at.y()) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(at.x())];
+  known = std::max(known, value);
+}
 
 std::int8_t NavigationGrid::at(const Eigen::Vector2i& cell) const {
   const Eigen::Vector2i at = cell - first;
@@ -94,24 +106,21 @@ std::optional<double> FloorFinder::floor_m(double below_m) const {
 }
 
 NavigationGrid project(const Volume& volume, double floor_m, const RobotHeights& heights, std::size_t max_cells) {
-  NavigationGrid grid;
-  grid.cell_m = volume.cell_m;
-  grid.floor_m = floor_m;
-  const Eigen::AlignedBox2i box = extent(volume, floor_m, heights, max_cells, grid.cropped);
-  if (box.isEmpty()) return grid;
-  grid.first = box.min();
-  grid.columns = box.max().x() - box.min().x() + 1;
-  grid.rows = box.max().y() - box.min().y() + 1;
-  grid.cells.assign(static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows),
-                    NavigationGrid::kUnknown);
+  const auto judge_cell = [&](const Eigen::Vector3i& cell, Space space) {
+    return judge(volume, cell.z(), space, floor_m, heights);
+  };
+  Eigen::AlignedBox2i box;  // with a column that counts
   volume.cells.for_each([&](const Eigen::Vector3i& cell, Space space) {
-    const Eigen::Vector2i at = cell.head<2>();
-    const Column column = judge(volume, cell.z(), space, floor_m, heights);
-    if (column == Column::kNothing || !box.contains(at)) return;
-    auto& value =
-        grid.cells[static_cast<std::size_t>(at.y() - grid.first.y()) * static_cast<std::size_t>(grid.columns) +
-                   static_cast<std::size_t>(at.x() - grid.first.x())];
-    value = std::max(value, column == Column::kObstacle ? NavigationGrid::kOccupied : NavigationGrid::kFree);
+    if (judge_cell(cell, space) != Column::kNothing) box.extend(cell.head<2>());
+  });
+  NavigationGrid grid = NavigationGrid::unknown(box, volume.cell_m, max_cells);
+  grid.floor_m = floor_m;
+  if (box.isEmpty()) return grid;
+  const Eigen::AlignedBox2i kept = grid.extent();
+  volume.cells.for_each([&](const Eigen::Vector3i& cell, Space space) {
+    const Column column = judge_cell(cell, space);
+    if (column == Column::kNothing || !kept.contains(Eigen::Vector2i(cell.head<2>()))) return;
+    grid.mark(cell.head<2>(), column == Column::kObstacle ? NavigationGrid::kOccupied : NavigationGrid::kFree);
   });
   return grid;
 }

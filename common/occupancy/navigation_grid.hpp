@@ -39,6 +39,12 @@ struct NavigationGrid {
   double floor_m = 0;              ///< along z of `grid`
   bool cropped = false;            ///< more is known than there was room for
 
+  /// Of such cells, all unknown; at most `max_cells` around the middle.
+  static NavigationGrid unknown(Eigen::AlignedBox2i box, double cell_m, std::size_t max_cells);
+  /// The box of its cells, inclusive.
+  Eigen::AlignedBox2i extent() const { return {first, first + Eigen::Vector2i(columns - 1, rows - 1)}; }
+  /// Occupied stays, and so does what is free unless it is occupied. The cell must be of the grid.
+  void mark(const Eigen::Vector2i& cell, std::int8_t value);
   Eigen::Vector2d origin_m() const { return cell_m * first.cast<double>(); }
   /// kUnknown outside.
   std::int8_t at(const Eigen::Vector2i& cell) const;

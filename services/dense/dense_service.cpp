@@ -15,6 +15,7 @@
 #include "common/io/text.hpp"
 #include "common/msg/point_cloud.hpp"
 #include "common/msg/transform_eigen.hpp"
+#include "common/occupancy/grid_message.hpp"
 #include "common/occupancy/octomap_file.hpp"
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
@@ -80,22 +81,6 @@ msg::PointCloud2 make_cloud(const std::vector<CloudPoint>& points, std::int64_t 
     slots.push_back({point.p_world.x(), point.p_world.y(), point.p_world.z(), std::bit_cast<float>(bgra)});
   }
   return msg::make_cloud(slots, "rgb", stamp_ns, map_frame);
-}
-
-msg::OccupancyGrid make_grid(const NavigationGrid& grid, const Eigen::Matrix3d& R_grid_map, std::int64_t stamp_ns,
-                             const std::string& map_frame) {
-  msg::OccupancyGrid message;
-  message.header = {msg::to_time(stamp_ns), map_frame};
-  message.info.map_load_time = message.header.stamp;
-  message.info.resolution = static_cast<float>(grid.cell_m);
-  message.info.width = static_cast<std::uint32_t>(grid.columns);
-  message.info.height = static_cast<std::uint32_t>(grid.rows);
-  const Eigen::Vector3d corner =
-      R_grid_map.transpose() * Eigen::Vector3d(grid.origin_m().x(), grid.origin_m().y(), grid.floor_m);
-  const Eigen::Quaterniond q(Eigen::Matrix3d(R_grid_map.transpose()));
-  message.info.origin = {{corner.x(), corner.y(), corner.z()}, {q.x(), q.y(), q.z(), q.w()}};
-  message.data = grid.cells;
-  return message;
 }
 
 std::optional<NavigationMap> make_navigation(const GridConfig& config) {

@@ -30,10 +30,6 @@ std::optional<DynamicMask> from_message(const msg::Image& message);
 /// x y z and rgb (packed as usual in ROS), all float32.
 msg::PointCloud2 make_cloud(const std::vector<CloudPoint>& points, std::int64_t stamp_ns, const std::string& map_frame);
 
-/// A floor plan; its origin also says how `grid` is turned in the map.
-msg::OccupancyGrid make_grid(const NavigationGrid& grid, const Eigen::Matrix3d& R_grid_map, std::int64_t stamp_ns,
-                             const std::string& map_frame);
-
 /// Maps for navigation: the floor plan and the voxel map.
 struct GridConfig {
   bool enabled = true;

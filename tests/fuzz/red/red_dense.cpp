@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "common/msg/transform_eigen.hpp"
+#include "common/occupancy/grid_message.hpp"
 #include "common/vision/rgbd_image.hpp"
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/dense_service.hpp"
@@ -53,7 +54,7 @@ class Target {
     map_.cloud(1000);
     navigation_.follow_corrections(2);
     const Volume volume = navigation_.volume(map_);
-    if (const auto grid = navigation_.grid(volume)) make_grid(*grid, navigation_.R_grid_map(), 0, "map");
+    if (const auto grid = navigation_.grid(volume)) occupancy::make_grid(*grid, navigation_.R_grid_map(), 0, "map");
   }
 
  private:
