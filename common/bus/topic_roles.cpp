@@ -88,6 +88,8 @@ const std::vector<TopicRoles>& topic_roles() {
       {kAtlas.name, {"atlas"}, Roles{"viewer", "observer"}},
       {kAtlasRobots.name, {"atlas"}, kOnlookers},
       {kAtlasPoints.name, {"atlas"}, kOnlookers},
+      {kAtlasFloorPlan.name, {"atlas"}, kOnlookers},
+      {kAtlasMapJumps.name, {"atlas"}, kOnlookers},
       {kMovers.name, {"filter"}, Roles{"viewer", "observer"}},
       {kMoverBoxes.name, {"filter"}, kOnlookers},
       {kMoverMarkers.name, {"filter"}, kOnlookers},
@@ -101,7 +103,7 @@ const std::vector<TopicRoles>& topic_roles() {
       {kMapPoints.name, {"slam"}, kOnlookers},
       {kDensePoints.name, {"dense"}, kOnlookers},
       {kMovingPoints.name, {"dense"}, kOnlookers},
-      {kOccupancyGrid.name, {"dense"}, kOnlookers},
+      {kOccupancyGrid.name, {"dense"}, Roles{"atlas"} + kOnlookers},
       {kDiagnostics.name, {"slam"}, kOnlookers},
       // Whatever is recorded can be played again; both work without types.
       {"rtd/*", {"replay"}, {"record", "replay", "topics"}},

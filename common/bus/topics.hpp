@@ -60,6 +60,11 @@ inline constexpr Topic<msg::OccupancyGrid> kOccupancyGrid{"rt/map", QosProfile::
 /// Where the robots are in the joint map: those of AtlasState::robots that have met it, in their order.
 inline constexpr Topic<msg::PoseArray> kAtlasRobots{"rt/atlas/robots", QosProfile::kLatched};
 inline constexpr Topic<msg::PointCloud2> kAtlasPoints{"rt/atlas/points", QosProfile::kLatched};
+/// The floor plans of the robots that have met, in one.
+inline constexpr Topic<msg::OccupancyGrid> kAtlasFloorPlan{"rt/atlas/floor_plan", QosProfile::kLatched};
+/// Each step of `map` -> `NAME/map`: what it does to coordinates in `map` (docs/frames.md). Several robots step at
+/// once: a reader must hold more than one message.
+inline constexpr Topic<msg::TransformStamped> kAtlasMapJumps{"rt/atlas/map_jumps", QosProfile::kKeyframes};
 inline constexpr Topic<msg::DiagnosticArray> kDiagnostics{"rt/diagnostics", QosProfile::kPose};
 }  // namespace topics
 

@@ -27,8 +27,12 @@ constexpr std::int64_t kSecondNs = 1'000'000'000, kPublishNs = kSecondNs / 2, kP
                        kStraightenNs = kSecondNs / 2;
 constexpr std::int64_t kAskAgainNs = 2 * kSecondNs;  ///< what was asked for and has not come
 constexpr std::size_t kMostWaiting = 4096, kMostRobots = 200;
-/// A transform that has changed by less is the same.
-constexpr double kSame_m = 0.001, kSame_rad = 0.0005;
+
+/// Whether a transform that has changed by so much is the same.
+bool is_same(const Eigen::Isometry3d& T) {
+  constexpr double kSame_m = 0.001, kSame_rad = 0.0005;
+  return T.translation().norm() < kSame_m && geometry::rotation_angle_rad(T) < kSame_rad;
+}
 
 /// Whose keyframes those of a map file are: a file next to it.
 std::filesystem::path owners_file(const std::string& map_file) {
@@ -70,7 +74,9 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
       state_writer_(runtime.bus.writer(bus::topics::kAtlas)),
       poses_writer_(runtime.bus.writer(bus::topics::kAtlasRobots)),
       points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),
+      plan_writer_(runtime.bus.writer(bus::topics::kAtlasFloorPlan)),
       tf_writer_(runtime.bus.writer(bus::topics::kTfStatic)),
+      jumps_writer_(runtime.bus.writer(bus::topics::kAtlasMapJumps)),
       server_(std::in_place, runtime.bus) {
   load_at_start();
   if (config_.robots.empty()) finder_.emplace(runtime.bus_options, bus::topics::kMap);
@@ -105,11 +111,11 @@ service::ExitCode AtlasService::run() {
   return finish();
 }
 
-void AtlasService::push(const std::string& robot, std::variant<Update, Features> message) {
+void AtlasService::push(const std::string& robot, Message message) {
   const std::lock_guard lock(mutex_);
   if (arrivals_.size() >= kMostWaiting) {
     ++dropped_;
-    if (std::holds_alternative<Features>(message)) return;  // it is asked for again
+    if (!std::holds_alternative<Update>(message)) return;  // it is asked for again, or comes again
     arrivals_.pop_front();
   }
   arrivals_.push_back({robot, std::move(message)});
@@ -152,6 +158,10 @@ void AtlasService::take(const Arrival& arrival) {
   if (lane == lanes_.end()) return;
   if (const auto* update = std::get_if<Update>(&arrival.message)) {
     atlas_->follow(arrival.robot, **update, service::realtime_ns());
+    return;
+  }
+  if (const auto* plan = std::get_if<Plan>(&arrival.message)) {
+    floor_plans_.take(arrival.robot, *plan);
     return;
   }
   const msg::KeyframeFeatures& features = *std::get<Features>(arrival.message);
@@ -208,18 +218,28 @@ void AtlasService::publish() {
   poses_writer_.write(poses);
   publish_transforms(state);
   publish_points();
+  publish_floor_plan();
   report(state);
 }
 
-/// One message with all of them whenever one changes: a late reader gets the newest message.
+/// One message with all of them whenever one changes: a late reader gets the newest message. A robot that has not met,
+/// or no more, as its map is another, has none.
 void AtlasService::publish_transforms(const msg::AtlasState& state) {
   bool changed = false;
   for (const msg::AtlasRobot& robot : state.robots) {
-    if (!robot.met || robot.name.empty()) continue;
+    if (robot.name.empty()) continue;
+    if (!robot.met) {
+      transforms_.erase(robot.name);
+      continue;
+    }
     const auto before = transforms_.find(robot.name);
     if (before != transforms_.end()) {
-      const Eigen::Isometry3d T = msg::to_isometry(before->second).inverse() * msg::to_isometry(robot.T_map_robot);
-      if (T.translation().norm() < kSame_m && geometry::rotation_angle_rad(T) < kSame_rad) continue;
+      const Eigen::Isometry3d T_map_robot = msg::to_isometry(robot.T_map_robot);
+      const Eigen::Isometry3d T_robot_before = msg::to_isometry(before->second).inverse();
+      if (is_same(T_robot_before * T_map_robot)) continue;
+      jumps_writer_.write(slam::make_transform(state.stamp_ns, config_.map_frame,
+                                               bus::frame_of_robot("map", robot.name),
+                                               msg::to_message(geometry::normalized(T_map_robot * T_robot_before))));
     }
     transforms_[robot.name] = robot.T_map_robot;
     changed = true;
@@ -238,6 +258,29 @@ void AtlasService::publish_points() {
   points_ns_ = now_ns;
   shown_ = atlas_->revision();
   points_writer_.write(slam::make_cloud(atlas_->points(), service::realtime_ns(), config_.map_frame));
+}
+
+/// Robots make theirs only while there is a reader.
+void AtlasService::read_floor_plan(const std::string& robot, Lane& lane, bool wanted) {
+  if (wanted == static_cast<bool>(lane.plans)) return;
+  lane.plans = {};
+  if (!wanted) return;
+  try {
+    lane.plans =
+        lane.bus->reader(bus::topics::kOccupancyGrid, [this, robot](Plan plan) { push(robot, std::move(plan)); });
+  } catch (const bus::BusError& error) {  // a keystore of an earlier version
+    if (robot_log_.pass()) SPDLOG_WARN("event=no_floor_plan robot=\"{}\" cause=\"{}\"", robot, error.what());
+  }
+}
+
+void AtlasService::publish_floor_plan() {
+  const bool wanted = plan_writer_.matched() > 0;
+  for (auto& [robot, lane] : lanes_) read_floor_plan(robot, lane, wanted);
+  const std::int64_t now_ns = service::monotonic_ns();
+  if (!wanted || now_ns - plan_ns_ < kPointsNs) return;
+  plan_ns_ = now_ns;
+  if (const auto plan = floor_plans_.join(transforms_, service::realtime_ns(), config_.map_frame))
+    plan_writer_.write(*plan);
 }
 
 void AtlasService::report(const msg::AtlasState& state) {
@@ -310,6 +353,7 @@ bus::CommandAnswer AtlasService::forget(const std::string& robot) {
   if (gone == 0) return {false, "no keyframe of a robot \"" + robot + "\" is in the joint map"};
   lanes_.erase(robot);
   transforms_.erase(robot);
+  floor_plans_.forget(robot);
   forgotten_.insert(robot);
   SPDLOG_INFO("event=robot_forgotten robot=\"{}\" keyframes={}", robot, gone);
   return {true, fmt::format("{} keyframes of {} forgotten; it is ignored until atlas is started again", gone, robot)};

@@ -22,6 +22,7 @@
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
 #include "services/atlas/core/atlas.hpp"
+#include "services/atlas/floor_plans.hpp"
 
 namespace CLI {
 class App;
@@ -74,9 +75,11 @@ class AtlasService {
  private:
   using Update = std::shared_ptr<const msg::MapUpdate>;
   using Features = std::shared_ptr<const msg::KeyframeFeatures>;
+  using Plan = std::shared_ptr<const msg::OccupancyGrid>;
+  using Message = std::variant<Update, Features, Plan>;
   struct Arrival {
     std::string robot;
-    std::variant<Update, Features> message;
+    Message message;
   };
   /// The topics of one robot.
   struct Lane {
@@ -85,11 +88,12 @@ class AtlasService {
     bus::Writer<msg::Submap> submaps;
     bus::Reader<msg::MapUpdate> updates;
     bus::Reader<msg::KeyframeFeatures> features;
-    std::int64_t asked_ns = 0;  ///< last time
+    bus::Reader<msg::OccupancyGrid> plans;  ///< while that of all has a reader
+    std::int64_t asked_ns = 0;              ///< last time
     std::size_t waiting_for = 0;
   };
 
-  void push(const std::string& robot, std::variant<Update, Features> message);
+  void push(const std::string& robot, Message message);
   std::deque<Arrival> take_arrivals();
   void take(const Arrival& arrival);
   void find_robots();
@@ -100,6 +104,8 @@ class AtlasService {
   void publish();
   void publish_transforms(const msg::AtlasState& state);
   void publish_points();
+  void read_floor_plan(const std::string& robot, Lane& lane, bool wanted);
+  void publish_floor_plan();
   void report(const msg::AtlasState& state);
   void load_at_start();
   void load(const std::string& file);
@@ -123,14 +129,17 @@ class AtlasService {
   bus::Writer<msg::AtlasState> state_writer_;
   bus::Writer<msg::PoseArray> poses_writer_;
   bus::Writer<msg::PointCloud2> points_writer_;
+  bus::Writer<msg::OccupancyGrid> plan_writer_;
   bus::Writer<msg::TFMessage> tf_writer_;
+  bus::Writer<msg::TransformStamped> jumps_writer_;
   std::map<std::string, Lane> lanes_;
   std::set<std::string> forgotten_;                   ///< robots that are not listened to any more
   std::map<std::string, msg::Transform> transforms_;  ///< T_map_robot as published
+  FloorPlans floor_plans_;
   std::uint64_t located_ = 0, asked_where_ = 0;
   std::uint64_t saved_ = 0;             ///< Atlas::revision() of what the file holds
   std::optional<std::uint64_t> shown_;  ///< the same of the published points
-  std::int64_t published_ns_ = 0, checkpoint_ns_ = 0, points_ns_ = 0, straightened_ns_ = 0;
+  std::int64_t published_ns_ = 0, checkpoint_ns_ = 0, points_ns_ = 0, plan_ns_ = 0, straightened_ns_ = 0;
   std::string trouble_;  ///< why the last save failed
   service::RateLimit robot_log_{std::chrono::seconds(1)}, query_log_{std::chrono::seconds(1)};
   std::optional<bus::CommandServer> server_;  // last: it uses the others

@@ -10,55 +10,22 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "services/atlas/status_command.hpp"
-#include "services/slam/keyframe_sender.hpp"
 #include "services/slam/map_file.hpp"
-#include "tests/support/atlas_robot.hpp"
+#include "tests/support/atlas_bus_robot.hpp"
 #include "tests/support/service_fixture.hpp"
 
 namespace rtd::atlas {
 namespace {
 
-using namespace std::chrono_literals;
+using test_support::AtlasBusRobot;
 using test_support::FeatureWorld;
 using test_support::Inbox;
-using test_support::query_of;
 
-/// The part of a robot's slam that reports its map.
-class Robot {
- public:
-  Robot(const bus::Bus& bus, const std::string& name, const FeatureWorld& world, std::uint64_t first_seq)
-      : bus_(bus.of_robot(name)),
-        submaps_reader_(bus_->reader<msg::Submap>(
-            bus::topics::kSubmap,
-            [inbox = submaps](std::shared_ptr<const msg::Submap> submap) { inbox.take(std::move(submap)); })),
-        publisher_(
-            *bus_, [this] { return slam_.map_view(); }, 20ms),
-        sender_(*bus_, unlimited(), slam_, publisher_),
-        world_(world),
-        next_(first_seq) {}
-
-  void walk(int frames) {
-    for (int i = 0; i < frames; ++i) slam_.process(*world_.view(next_++));
-  }
-  void ask_where() { sender_.send(query_of(*world_.view(next_))); }
-
-  Inbox<msg::Submap> submaps;
-
- private:
-  static slam::ServiceConfig unlimited() {
-    slam::ServiceConfig config;
-    config.atlas.bytes_per_s = 1'000'000'000;
-    return config;
-  }
-
-  slam::SlamSystem slam_{test_support::settled(), slam::MappingMode::kSynchronous, test_support::frozen_clock};
-  std::shared_ptr<bus::Bus> bus_;
-  bus::Reader<msg::Submap> submaps_reader_;
-  slam::MapPublisher publisher_;
-  slam::KeyframeSender sender_;
-  const FeatureWorld& world_;
-  std::uint64_t next_;
-};
+Eigen::Isometry3d to_isometry(const msg::RosTransform& transform) {
+  const auto& [translation, rotation] = transform;
+  return msg::to_isometry(
+      {{translation.x, translation.y, translation.z}, {rotation.x, rotation.y, rotation.z, rotation.w}});
+}
 
 class AtlasServiceTest : public test_support::ServiceFixture<AtlasService> {
  protected:
@@ -94,18 +61,14 @@ class AtlasServiceTest : public test_support::ServiceFixture<AtlasService> {
   Inbox<msg::TFMessage> transforms_;
   bus::Reader<msg::AtlasState> state_reader_;
   bus::Reader<msg::TFMessage> tf_reader_;
-  std::optional<Robot> anna_, bert_;
+  std::optional<AtlasBusRobot> anna_, bert_;
 };
 
 TEST_F(AtlasServiceTest, puts_robots_of_one_room_into_one_map) {
   let_them_meet();
   ASSERT_TRUE(transforms_.wait([](const auto& all) { return !all.empty() && all.back()->transforms.size() == 2; }));
   const auto tf = transforms_.all().back();
-  const auto T_map = [&](std::size_t robot) {
-    const auto& [translation, rotation] = tf->transforms[robot].transform;
-    return msg::to_isometry(
-        {{translation.x, translation.y, translation.z}, {rotation.x, rotation.y, rotation.z, rotation.w}});
-  };
+  const auto T_map = [&](std::size_t robot) { return to_isometry(tf->transforms[robot].transform); };
   EXPECT_EQ(tf->transforms[0].header.frame_id, "map");
   EXPECT_EQ(tf->transforms[0].child_frame_id, "anna/map");
   EXPECT_EQ(tf->transforms[1].child_frame_id, "bert/map");
@@ -113,6 +76,49 @@ TEST_F(AtlasServiceTest, puts_robots_of_one_room_into_one_map) {
   EXPECT_LT((T_anna_bert.inverse() * FeatureWorld::T_world_camera(250)).translation().norm(), 0.02)
       << "bert's map began there";
   EXPECT_THAT(to_table(*atlas_.all().back()), testing::HasSubstr("bert"));
+}
+
+TEST_F(AtlasServiceTest, says_when_the_map_of_a_robot_has_jumped) {
+  Inbox<msg::TransformStamped> jumps;
+  receive(bus::topics::kAtlasMapJumps, jumps);
+  let_them_meet();
+  ASSERT_TRUE(transforms_.wait([](const auto& all) { return !all.empty() && all.back()->transforms.size() == 2; }));
+  const auto T_map_bert = [](const auto& all) { return to_isometry(all.back()->transforms[1].transform); };
+  const Eigen::Isometry3d before = T_map_bert(transforms_.all());
+  const std::size_t known = jumps.all().size();
+  bert_->move_map(0.5);
+  ASSERT_TRUE(jumps.wait([&](const auto& all) { return all.size() > known; }));
+  const msg::TransformStamped jump = *jumps.all().back();
+  EXPECT_EQ(jump.header.frame_id, "map");
+  EXPECT_EQ(jump.child_frame_id, "bert/map");
+  ASSERT_TRUE(transforms_.wait(
+      [&](const auto& all) { return (T_map_bert(all).translation() - before.translation()).norm() > 0.4; }));
+  EXPECT_LT((T_map_bert(transforms_.all()).inverse() * to_isometry(jump.transform) * before).translation().norm(),
+            0.01);
+}
+
+TEST_F(AtlasServiceTest, joins_the_floor_plans_of_robots_that_have_met) {
+  Inbox<msg::OccupancyGrid> joint;
+  receive(bus::topics::kAtlasFloorPlan, joint);
+  let_them_meet();
+  std::vector<std::shared_ptr<bus::Bus>> buses;
+  std::vector<bus::Writer<msg::OccupancyGrid>> dense;
+  for (const char* robot : {"anna", "bert"}) {
+    dense.push_back(buses.emplace_back(bus_->of_robot(robot))->writer(bus::topics::kOccupancyGrid));
+    msg::OccupancyGrid plan;
+    plan.info.resolution = 0.1F;
+    plan.info.width = plan.info.height = 10;
+    plan.info.origin = {{buses.size() * 20.0, 0, 0}, {0, 0, 0, 1}};
+    plan.data.assign(100, 0);
+    dense.back().write(plan);
+  }
+  const auto known = [](const auto& all) {
+    return all.empty() ? 0 : std::ranges::count(all.back()->data, std::int8_t{0});
+  };
+  ASSERT_TRUE(joint.wait([&](const auto& all) { return known(all) > 150; })) << "of both";
+  EXPECT_TRUE(call("atlas/forget", "anna").success);
+  ASSERT_TRUE(joint.wait([&](const auto& all) { return known(all) < 150; })) << "of one";
+  EXPECT_GT(known(joint.all()), 50);
 }
 
 TEST_F(AtlasServiceTest, answers_a_robot_that_asks_where_it_is) {

@@ -52,6 +52,8 @@ void for_each_topic(Visitor visit) {
   visit(kAtlas);
   visit(kAtlasRobots);
   visit(kAtlasPoints);
+  visit(kAtlasFloorPlan);
+  visit(kAtlasMapJumps);
   visit(kMovers);
   visit(kMoverBoxes);
   visit(kMoverMarkers);

@@ -62,7 +62,9 @@ std::vector<TopicFacts> all_topics() {
           facts(kSubmap),
           facts(kAtlas),
           facts(kAtlasRobots),
-          facts(kAtlasPoints)};
+          facts(kAtlasPoints),
+          facts(kAtlasFloorPlan),
+          facts(kAtlasMapJumps)};
 }
 
 TEST(Topics, have_names_of_their_own) {
