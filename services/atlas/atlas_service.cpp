@@ -146,6 +146,13 @@ void AtlasService::take(const Arrival& arrival) {
   const std::uint64_t meetings = atlas_->counters().meetings;
   if (atlas_->add(arrival.robot, features) && lane->second.waiting_for > 0) --lane->second.waiting_for;
   if (atlas_->counters().meetings > meetings) SPDLOG_INFO("event=meeting robot=\"{}\"", arrival.robot);
+  report_refusal("the place is there twice");
+}
+
+/// Meetings that were taken back since the last call.
+void AtlasService::report_refusal(const char* cause) {
+  const std::uint64_t before = std::exchange(refused_, atlas_->counters().refused);
+  if (refused_ > before) SPDLOG_WARN("event=meeting_refused cause=\"{}\"", cause);
 }
 
 /// More only once the last have come, or do not come.
@@ -170,11 +177,9 @@ void AtlasService::answer_query(const std::string& robot, Lane& lane, const msg:
 void AtlasService::straighten() {
   const std::int64_t now_ns = service::monotonic_ns();
   if (now_ns - straightened_ns_ < kStraightenNs) return;
-  const std::uint64_t refused = atlas_->counters().refused;
   atlas_->straighten();
   straightened_ns_ = service::monotonic_ns();
-  if (atlas_->counters().refused > refused)
-    SPDLOG_WARN("event=meeting_refused cause=\"it contradicts what other robots have measured\"");
+  report_refusal("it contradicts what other robots have measured");
 }
 
 void AtlasService::publish() {
@@ -203,7 +208,7 @@ void AtlasService::publish_transforms(const msg::AtlasState& state) {
   for (const msg::AtlasRobot& robot : state.robots) {
     if (robot.name.empty()) continue;
     if (!robot.met) {
-      transforms_.erase(robot.name);
+      changed = transforms_.erase(robot.name) > 0 || changed;
       continue;
     }
     const auto before = transforms_.find(robot.name);

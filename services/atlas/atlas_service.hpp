@@ -101,6 +101,7 @@ class AtlasService {
   void ask(const std::string& robot, Lane& lane);
   void answer_query(const std::string& robot, Lane& lane, const msg::KeyframeFeatures& query);
   void straighten();
+  void report_refusal(const char* cause);
   void publish();
   void publish_transforms(const msg::AtlasState& state);
   void publish_points();
@@ -136,7 +137,7 @@ class AtlasService {
   std::set<std::string> forgotten_;                   ///< robots that are not listened to any more
   std::map<std::string, msg::Transform> transforms_;  ///< T_map_robot as published
   FloorPlans floor_plans_;
-  std::uint64_t located_ = 0, asked_where_ = 0;
+  std::uint64_t located_ = 0, asked_where_ = 0, refused_ = 0;
   std::uint64_t saved_ = 0;             ///< Atlas::revision() of what the file holds
   std::optional<std::uint64_t> shown_;  ///< the same of the published points
   std::int64_t published_ns_ = 0, checkpoint_ns_ = 0, points_ns_ = 0, plan_ns_ = 0, straightened_ns_ = 0;

@@ -56,10 +56,10 @@ int main(int argc, char** argv) {
           robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m, robot.add_ms,
           robot.straighten_ms);
     std::cout << fmt::format(
-        "joint ate {:.4f} m, {} keyframes met, {} implausible, {} meetings, {} refused, {} corrections, "
+        "joint ate {:.4f} m, {} keyframes met, {} implausible, {} alike, {} meetings, {} refused, {} corrections, "
         "{} gave way\n",
-        result.ate_joint_m, result.counters.met, result.counters.implausible, result.counters.meetings,
-        result.counters.refused, result.counters.corrections, result.counters.given_way);
+        result.ate_joint_m, result.counters.met, result.counters.implausible, result.counters.alike,
+        result.counters.meetings, result.counters.refused, result.counters.corrections, result.counters.given_way);
   } catch (const std::exception& error) {
     std::cerr << "rtd_offline_atlas: " << error.what() << '\n';
     return 1;

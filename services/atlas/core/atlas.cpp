@@ -211,7 +211,20 @@ void Atlas::drop(KeyframeId id) {
   const MapId component = keyframe.map;
   map_.forget_removed(0);
   map_.remove_keyframe(id);
-  if (map_.keyframe_count(component) == 0) worlds_.erase(component);  // or the next world would never be that of `map`
+  if (map_.keyframe_count(component) == 0)
+    remove_component(component);  // or the next world would never be that of `map`
+}
+
+/// What was joined by way of a component that is gone stays joined.
+void Atlas::remove_component(MapId gone) {
+  const MapId world = worlds_.at(gone);
+  worlds_.erase(gone);
+  const auto left = std::ranges::find(worlds_, world, [](const auto& entry) { return entry.second; });
+  for (Join& join : joins_)
+    for (MapId* end : {&join.older, &join.newer})
+      if (*end == gone && left != worlds_.end()) *end = left->first;
+  std::erase_if(joins_,
+                [&](const Join& join) { return join.older == join.newer || join.older == gone || join.newer == gone; });
 }
 
 std::size_t Atlas::forget(const std::string& name) {
@@ -230,22 +243,18 @@ std::optional<msg::Submap> Atlas::locate(const msg::KeyframeFeatures& message) c
   std::vector<std::uint32_t> kept;
   const slam::FramePtr frame = to_frame(message, kept);
   if (frame == nullptr) return std::nullopt;
-  slam::PlaceQuery query;
-  query.admitted = [&](KeyframeId id) { return is_joined(id); };
-  query.max_candidates = static_cast<std::size_t>(config_.slam.place.candidates);
-  const slam::BagOfWords bag = vocabulary_->describe(frame->features);
-  for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, bag, query)) {
-    const auto meeting = slam::meet_place(map_, *frame, candidate.keyframe, config_.slam);
-    if (!meeting) continue;
-    const io::Bytes file =
-        to_map_file(take_part(map_, around(meeting->place, meeting->T_world_camera), KeptFeatures::kOfLandmarks));
-    msg::Submap submap{message.stamp_ns, msg::to_message(meeting->T_world_camera), {}};
-    submap.file.resize(file.size());
-    std::ranges::transform(file, submap.file.begin(),
-                           [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
-    return submap;
-  }
-  return std::nullopt;
+  const slam::BagOfWords words = vocabulary_->describe(frame->features);
+  const auto meeting = find_place(*frame, words, [&](KeyframeId id) { return is_joined(id); });
+  if (!meeting) return std::nullopt;
+  const auto twin =
+      find_place(*frame, words, [&](KeyframeId id) { return is_joined(id) && !is_near(id, meeting->place); });
+  if (twin && !is_same(*meeting, *twin)) return std::nullopt;
+  const io::Bytes file =
+      to_map_file(take_part(map_, around(meeting->place, meeting->T_world_camera), KeptFeatures::kOfLandmarks));
+  msg::Submap submap{message.stamp_ns, msg::to_message(meeting->T_world_camera), {}};
+  submap.file.resize(file.size());
+  std::ranges::transform(file, submap.file.begin(), [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+  return submap;
 }
 
 /// The keyframes that see about the same from about there, ascending.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -60,8 +61,9 @@ struct AtlasCounters {
   std::uint64_t broken = 0;       ///< refused: no keyframe can be so
   std::uint64_t met = 0;          ///< keyframes found at a place of others
   std::uint64_t implausible = 0;  ///< of those, too far from where the joint map has them
+  std::uint64_t alike = 0;        ///< of those, at places that there are twice
   std::uint64_t meetings = 0;     ///< confirmed by enough of them
-  std::uint64_t refused = 0;      ///< of these, taken back because they bent the map of another robot
+  std::uint64_t refused = 0;  ///< of these, taken back: they bent the map of another robot, or the place is there twice
   std::uint64_t corrections = 0;  ///< of the joint map
   std::uint64_t given_way = 0;    ///< keyframes that newer ones of the same place replaced
 };
@@ -124,6 +126,11 @@ class Atlas {
     std::uint64_t number = 0;                                     ///< of the confirmed meeting that it belongs to
     Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();  ///< what it does to the world of the keyframe
   };
+  /// Two components of the map that share a frame because of a meeting.
+  struct Join {
+    MapId older = 0, newer = 0;
+    std::uint64_t meeting = 0;
+  };
   struct Robot {
     std::int64_t session_ns = 0;
     double behind_s = kUnknown_s;                             ///< that its clock is behind, at most
@@ -157,7 +164,14 @@ class Atlas {
   void see_landmark(Robot& robot, const slam::Keyframe& keyframe, std::uint32_t feature, std::uint32_t robot_id);
   void look_for_meeting(const std::string& name, Robot& robot, KeyframeId keyframe);
   std::optional<slam::PlaceMeeting> meet(const std::string& name, const Robot& robot, KeyframeId keyframe);
-  bool is_plausible(const Robot& robot, KeyframeId keyframe, const slam::PlaceMeeting& meeting) const;
+  std::optional<slam::PlaceMeeting> find_place(const slam::Frame& frame, const slam::BagOfWords& words,
+                                               const std::function<bool(KeyframeId)>& admitted) const;
+  bool is_near(KeyframeId a, KeyframeId b) const;
+  bool is_plausible(KeyframeId keyframe, const slam::PlaceMeeting& meeting, double way_m) const;
+  bool is_same(const slam::PlaceMeeting& meeting, const slam::PlaceMeeting& other) const;
+  bool is_borne_out(const std::string& name, const Meeting& meeting) const;
+  KeyframeId nearest_view(MapId world, const Eigen::Isometry3d& T_world_camera) const;
+  void doubt_meetings_at(KeyframeId place);
   void accept(const std::string& name, Robot& robot, const Meeting& last, std::vector<Meeting> agreeing);
   void join_worlds(MapId kept, MapId joined, const Eigen::Isometry3d& T_kept_joined);
   MapId world_of(KeyframeId keyframe) const { return worlds_.at(map_.find_keyframe(keyframe)->map); }
@@ -170,7 +184,11 @@ class Atlas {
   void hand_on_meetings(std::vector<Meeting>& meetings, KeyframeId id, KeyframeId heir) const;
   bool straighten_world(MapId world, const std::string& robot);
   bool bends_others(const slam::PoseGraph& graph, const std::vector<KeyframeId>& nodes, const std::string& robot) const;
-  bool take_back_meeting(const std::string& robot);
+  bool take_back_last(const std::string& robot);
+  void take_back(std::uint64_t meeting);
+  std::set<std::uint64_t> meeting_numbers() const;
+  void separate_worlds();
+  void remove_component(MapId gone);
   slam::PoseGraph make_graph(MapId world, std::vector<KeyframeId>& nodes) const;
   std::optional<Eigen::Isometry3d> motion_by_robot(KeyframeId from, KeyframeId to) const;
 
@@ -184,6 +202,8 @@ class Atlas {
   std::map<Cell, std::vector<KeyframeId>> cells_;
   std::map<std::string, Robot> robots_;
   std::vector<Meeting> meetings_;
+  std::vector<Join> joins_;
+  std::map<std::uint64_t, int> doubts_;   ///< of meetings: finds of the same place elsewhere
   std::uint64_t last_meeting_ = 0;        ///< Meeting::number
   std::map<MapId, std::string> crooked_;  ///< worlds that are to be straightened, and the robot that is the cause
   AtlasCounters counters_;

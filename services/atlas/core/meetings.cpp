@@ -3,6 +3,7 @@
 /// Where the maps of robots meet, and the joint map that follows: docs/atlas.md.
 #include <algorithm>
 #include <ranges>
+#include <set>
 
 #include "common/geometry/se3.hpp"
 #include "services/atlas/core/atlas.hpp"
@@ -15,26 +16,85 @@ using slam::kNoKeyframe;
 /// Of one robot: more are forgotten, the oldest first.
 static constexpr std::size_t kMostUndecided = 50;
 
-std::optional<slam::PlaceMeeting> Atlas::meet(const std::string& name, const Robot& robot, KeyframeId id) {
-  const MapId here = world_of(id);
+namespace {
+
+/// Views that differ by less may show the same things.
+constexpr double kNear_m = 2, kNear_rad = 1;
+/// Keyframes of which it is asked whether they bear out a meeting of two worlds, and how far from a keyframe there.
+constexpr int kMostAsked = 20;
+constexpr double kBorneOut_m = 0.15, kBorneOut_rad = 0.1;
+constexpr double kLookedAt_m = 0.75, kLookedAt_rad = 0.5;
+
+bool is_near(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b, double most_m, double most_rad) {
+  const Eigen::Isometry3d T = a.inverse() * b;
+  return T.translation().norm() < most_m && geometry::rotation_angle_rad(T) < most_rad;
+}
+
+}  // namespace
+
+bool Atlas::is_near(KeyframeId a, KeyframeId b) const {
+  return world_of(a) == world_of(b) && atlas::is_near(map_.find_keyframe(a)->T_world_camera,
+                                                      map_.find_keyframe(b)->T_world_camera, kNear_m, kNear_rad);
+}
+
+/// The first place among those admitted that the keyframe is found at.
+std::optional<slam::PlaceMeeting> Atlas::find_place(const slam::Frame& frame, const slam::BagOfWords& words,
+                                                    const std::function<bool(KeyframeId)>& admitted) const {
   slam::PlaceQuery query;
-  query.admitted = [&](KeyframeId other) { return sources_.at(other).robot != name || world_of(other) != here; };
+  query.admitted = admitted;
   query.max_candidates = static_cast<std::size_t>(config_.slam.place.candidates);
-  for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, *places_.find(id), query)) {
-    auto meeting = slam::meet_place(map_, *map_.find_keyframe(id)->frame, candidate.keyframe, config_.slam);
-    if (!meeting) continue;
-    ++counters_.met;
-    if (is_plausible(robot, id, *meeting)) return meeting;
-    ++counters_.implausible;
-  }
+  for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, words, query))
+    if (auto meeting = slam::meet_place(map_, frame, candidate.keyframe, config_.slam)) return meeting;
   return std::nullopt;
 }
 
+std::optional<slam::PlaceMeeting> Atlas::meet(const std::string& name, const Robot& robot, KeyframeId id) {
+  const MapId here = world_of(id);
+  const Keyframe& keyframe = *map_.find_keyframe(id);
+  const slam::BagOfWords& words = *places_.find(id);
+  const auto is_others = [&](KeyframeId other) { return sources_.at(other).robot != name || world_of(other) != here; };
+  auto meeting = find_place(*keyframe.frame, words, is_others);
+  if (!meeting) return std::nullopt;
+  ++counters_.met;
+  if (!is_plausible(id, *meeting, robot.way_m - robot.way_at_meeting_m)) {
+    ++counters_.implausible;
+    doubt_meetings_at(meeting->place);
+    return std::nullopt;
+  }
+  // A place that is there twice says nothing: among those of others, or on the robot's own way.
+  const KeyframeId place = meeting->place;
+  const auto twin = find_place(*keyframe.frame, words, [&](KeyframeId other) {
+    return !is_near(other, place) && !is_near(other, id) &&
+           world_of(other) == (is_others(other) ? world_of(place) : here);
+  });
+  if (!twin ||
+      (world_of(twin->place) == world_of(place) ? is_same(*meeting, *twin) : is_plausible(id, *twin, robot.way_m)))
+    return meeting;
+  ++counters_.alike;
+  doubt_meetings_at(place);
+  doubt_meetings_at(twin->place);
+  return std::nullopt;
+}
+
+/// Whether two places of one world that a frame was found at are one, seen from two sides.
+bool Atlas::is_same(const slam::PlaceMeeting& meeting, const slam::PlaceMeeting& other) const {
+  const slam::LoopConfig& loop = config_.slam.loop;
+  return atlas::is_near(meeting.T_world_camera, other.T_world_camera, loop.max_offset_m, loop.max_offset_rad);
+}
+
+/// Meetings near a place that was found elsewhere too. Enough such finds, and they are taken back.
+void Atlas::doubt_meetings_at(KeyframeId place) {
+  std::set<std::uint64_t> doubted;
+  for (const Meeting& meeting : meetings_)
+    if (is_near(meeting.place, place) || is_near(meeting.keyframe, place)) doubted.insert(meeting.number);
+  for (const std::uint64_t number : doubted)
+    if (++doubts_[number] >= config_.slam.loop.confirmations) take_back(number);
+}
+
 /// Between two worlds nothing is known. In one, the correction must be one that drift since the last meeting explains.
-bool Atlas::is_plausible(const Robot& robot, KeyframeId id, const slam::PlaceMeeting& meeting) const {
+bool Atlas::is_plausible(KeyframeId id, const slam::PlaceMeeting& meeting, double way_m) const {
   if (world_of(id) != world_of(meeting.place)) return true;
   const Eigen::Isometry3d T = map_.find_keyframe(id)->T_world_camera.inverse() * meeting.T_world_camera;
-  const double way_m = robot.way_m - robot.way_at_meeting_m;
   const slam::LoopConfig& loop = config_.slam.loop;
   return T.translation().norm() <= loop.max_offset_m + loop.max_drift_ratio * way_m &&
          geometry::rotation_angle_rad(T) <= loop.max_offset_rad + loop.max_drift_rad_m * way_m;
@@ -58,8 +118,43 @@ void Atlas::look_for_meeting(const std::string& name, Robot& robot, KeyframeId i
       agreeing.push_back(other);
   robot.undecided.push_back(meeting);
   if (robot.undecided.size() > kMostUndecided) robot.undecided.erase(robot.undecided.begin());
-  if (static_cast<int>(agreeing.size()) >= config_.slam.loop.confirmations)
+  if (static_cast<int>(agreeing.size()) < config_.slam.loop.confirmations) return;
+  if (world_of(id) == world_of(meeting.place) || is_borne_out(name, meeting))
     accept(name, robot, meeting, std::move(agreeing));
+}
+
+/// Between two worlds: of the robot's keyframes that look at what the other world has seen too, half must find it.
+bool Atlas::is_borne_out(const std::string& name, const Meeting& meeting) const {
+  const MapId here = world_of(meeting.keyframe), there = world_of(meeting.place);
+  int looked = 0, found = 0;
+  for (const auto& [id, keyframe] : map_.keyframes() | std::views::reverse) {
+    if (looked == kMostAsked) break;
+    if (sources_.at(id).robot != name || world_of(id) != here) continue;
+    const Eigen::Isometry3d T_there_camera = meeting.T_new_old * keyframe.T_world_camera;
+    const KeyframeId place = nearest_view(there, T_there_camera);
+    if (place == kNoKeyframe) continue;
+    ++looked;
+    const auto met = slam::look_again(map_, *keyframe.frame, place, T_there_camera, config_.slam);
+    if (met && atlas::is_near(met->T_world_camera, T_there_camera, kBorneOut_m, kBorneOut_rad)) ++found;
+  }
+  return 2 * found >= looked;
+}
+
+/// kNoKeyframe where the world has none that looks at about the same from about there.
+KeyframeId Atlas::nearest_view(MapId world, const Eigen::Isometry3d& T_world_camera) const {
+  KeyframeId nearest = kNoKeyframe;
+  double least = 1;
+  for (const auto& [id, keyframe] : map_.keyframes()) {
+    if (worlds_.at(keyframe.map) != world) continue;
+    const Eigen::Isometry3d T = T_world_camera.inverse() * keyframe.T_world_camera;
+    const double apart =
+        std::max(T.translation().norm() / kLookedAt_m, geometry::rotation_angle_rad(T) / kLookedAt_rad);
+    if (apart < least) {
+      least = apart;
+      nearest = id;
+    }
+  }
+  return nearest;
 }
 
 void Atlas::accept(const std::string& name, Robot& robot, const Meeting& last, std::vector<Meeting> agreeing) {
@@ -73,6 +168,9 @@ void Atlas::accept(const std::string& name, Robot& robot, const Meeting& last, s
   ++robot.meetings;
   ++counters_.meetings;
   const MapId here = world_of(last.keyframe), there = world_of(last.place);
+  const auto [older, newer] =
+      std::minmax({map_.find_keyframe(last.place)->map, map_.find_keyframe(last.keyframe)->map});
+  if (older != newer) joins_.push_back({older, newer, last_meeting_});
   if (there < here) join_worlds(there, here, last.T_new_old);
   if (here < there) join_worlds(here, there, last.T_new_old.inverse());
   crooked_[std::min(here, there)] = name;
@@ -151,15 +249,47 @@ bool Atlas::bends_others(const slam::PoseGraph& graph, const std::vector<Keyfram
 }
 
 /// The last one of a robot; false when it has none.
-bool Atlas::take_back_meeting(const std::string& robot) {
+bool Atlas::take_back_last(const std::string& robot) {
   const auto last = std::ranges::find_if(meetings_.rbegin(), meetings_.rend(), [&](const Meeting& meeting) {
     return sources_.at(meeting.keyframe).robot == robot;
   });
   if (last == meetings_.rend()) return false;
-  const std::uint64_t number = last->number;
-  std::erase_if(meetings_, [&](const Meeting& meeting) { return meeting.number == number; });
-  ++counters_.refused;
+  take_back(last->number);
   return true;
+}
+
+void Atlas::take_back(std::uint64_t number) {
+  std::erase_if(meetings_, [&](const Meeting& meeting) { return meeting.number == number; });
+  doubts_.erase(number);
+  ++counters_.refused;
+  // Of the same two, meetings that nothing is left of do not outlive it.
+  const std::set<std::uint64_t> left = meeting_numbers();
+  std::set<std::pair<MapId, MapId>> doubted;
+  for (const Join& join : joins_)
+    if (join.meeting == number) doubted.emplace(join.older, join.newer);
+  const auto ended = [&](const Join& join) {
+    return join.meeting == number || (doubted.contains({join.older, join.newer}) && !left.contains(join.meeting));
+  };
+  if (std::erase_if(joins_, ended) > 0) separate_worlds();
+}
+
+/// Components that no meeting joins any more are worlds of their own again.
+void Atlas::separate_worlds() {
+  std::map<MapId, MapId> worlds;
+  for (const auto& [component, world] : worlds_) worlds[component] = component;
+  for (bool changed = true; std::exchange(changed, false);)
+    for (const Join& join : joins_) {
+      MapId &a = worlds.at(join.older), &b = worlds.at(join.newer);
+      changed = changed || a != b;
+      a = b = std::min(a, b);
+    }
+  if (worlds == worlds_) return;
+  for (const auto& [component, world] : worlds)
+    if (world != worlds_.at(component)) crooked_.try_emplace(world);
+  worlds_ = std::move(worlds);
+  for (auto& [name, robot] : robots_) robot.undecided.clear();
+  ++revision_;
+  sort_into_cells();
 }
 
 /// `robot` is the cause. What it says must not bend the maps of others: else its last meeting is taken back.
@@ -175,7 +305,7 @@ bool Atlas::straighten_world(MapId world, const std::string& robot) {
     for (std::size_t i = 0; i < nodes.size(); ++i) poses[nodes[i]] = graph.nodes[i].T_world_node;
     slam::move_keyframes(map_, poses);
     return true;
-  } while (take_back_meeting(robot));
+  } while (take_back_last(robot));
   return false;
 }
 
@@ -190,6 +320,18 @@ void Atlas::trim_meetings() {
   std::vector<Meeting> kept;
   std::ranges::copy_if(meetings_ | std::views::reverse, std::back_inserter(kept), count);
   meetings_.assign(kept.rbegin(), kept.rend());
+  const std::set<std::uint64_t> left = meeting_numbers();
+  std::set<std::pair<MapId, MapId>> joined;
+  std::vector<Join> newest;
+  for (const Join& join : joins_ | std::views::reverse)
+    if (joined.emplace(join.older, join.newer).second || left.contains(join.meeting)) newest.push_back(join);
+  joins_.assign(newest.rbegin(), newest.rend());
+}
+
+std::set<std::uint64_t> Atlas::meeting_numbers() const {
+  std::set<std::uint64_t> numbers;
+  for (const Meeting& meeting : meetings_) numbers.insert(meeting.number);
+  return numbers;
 }
 
 bool Atlas::straighten() {

@@ -43,5 +43,16 @@ TEST(AtlasClips, rooms_that_look_alike_are_not_taken_for_one) {
   for (std::size_t i = 1; i < robots.size(); ++i) EXPECT_FALSE(result.robots[i].met) << robots[i].name;
 }
 
+/// Sides of a corridor that are the same to the last pixel: nothing but the way walked tells them apart.
+TEST(AtlasClips, sides_of_a_corridor_that_are_the_same_join_no_robots) {
+  OfflineOptions options;
+  options.front_end.mode = "off";
+  const std::string corridor = "synthetic:lookalike?seed=1";
+  const TrialResult result = run_atlas_trial({{"anna", corridor, 0, 60}, {"bert", corridor, 70, 110}}, options);
+  EXPECT_GT(result.counters.met, 20U) << "keyframes of bert are found where anna was";
+  EXPECT_EQ(result.counters.meetings, result.counters.refused) << "all taken back";
+  EXPECT_FALSE(result.robots[1].met);
+}
+
 }  // namespace
 }  // namespace rtd::test_support

@@ -202,6 +202,103 @@ TEST(Atlas, a_robot_with_a_false_map_bends_no_other_map) {
   EXPECT_LT(error_m(atlas, anna, anna), 0.01);
 }
 
+/// Keyframes of a robot as it sends them, with where it has them.
+struct SentKeyframe {
+  Eigen::Isometry3d T_robot_camera;
+  msg::KeyframeFeatures features;
+};
+
+std::vector<SentKeyframe> keyframes_of(AtlasRobot& robot) {
+  return robot.slam().read_map([](const slam::Map& map) {
+    std::vector<SentKeyframe> sent;
+    for (const auto& [id, keyframe] : map.keyframes())
+      sent.push_back({keyframe.T_world_camera, slam::make_features(map, keyframe, true)});
+    return sent;
+  });
+}
+
+/// Sends them as the next ones of `name`, each `T` from where it was.
+class Sender {
+ public:
+  explicit Sender(std::string name) : name_(std::move(name)) {}
+  void send(Atlas& atlas, const std::vector<SentKeyframe>& keyframes, const Eigen::Isometry3d& T) {
+    for (const SentKeyframe& keyframe : keyframes) {
+      msg::KeyframeFeatures features = keyframe.features;
+      features.session_ns = 1;
+      features.keyframe_id = next_++;
+      features.stamp_ns += 1'000'000'000LL * next_;
+      for (msg::KeyframeFeature& feature : features.features)
+        if (feature.landmark_id != msg::kNoId) feature.landmark_id += 100'000U * next_;
+      msg::MapUpdate update;
+      update.session_ns = 1;
+      msg::MapKeyframe& entry = update.keyframes.emplace_back();
+      entry.keyframe_id = features.keyframe_id;
+      entry.stamp_ns = features.stamp_ns;
+      entry.T_world_camera = msg::to_message(T * keyframe.T_robot_camera);
+      atlas.follow(name_, update, entry.stamp_ns);
+      atlas.add(name_, features);
+      atlas.straighten();
+    }
+  }
+
+ private:
+  std::string name_;
+  std::uint32_t next_ = 0;
+};
+
+TEST(Atlas, a_place_that_is_there_twice_joins_no_robots) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(200, atlas);
+  const std::vector<SentKeyframe> room = keyframes_of(anna);
+  Sender bert("bert");
+  bert.send(atlas, room, Eigen::Isometry3d::Identity());
+  ASSERT_TRUE(robot_in(atlas.state(), "bert").met) << "so far nothing speaks against it";
+  EXPECT_TRUE(atlas.locate(query_of(*world.view(50))));
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation().x() = 30;
+  bert.send(atlas, room, T);
+  EXPECT_FALSE(robot_in(atlas.state(), "bert").met) << "the room is there twice: in which of them is anna?";
+  EXPECT_GE(atlas.counters().refused, 1U);
+  bert.send(atlas, room, T);
+  EXPECT_FALSE(robot_in(atlas.state(), "bert").met);
+  EXPECT_TRUE(robot_in(atlas.state(), "anna").met);
+  EXPECT_EQ(atlas.map().check_invariants(), "");
+}
+
+TEST(Atlas, says_nothing_where_a_view_fits_two_places) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0);
+  anna.walk(200, atlas);
+  const std::vector<SentKeyframe> room = keyframes_of(anna);
+  Atlas twins({});
+  Sender carl("carl");
+  carl.send(twins, room, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(twins.locate(query_of(*world.view(50))));
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation().x() = 30;
+  carl.send(twins, room, T);
+  EXPECT_FALSE(twins.locate(query_of(*world.view(50))));
+}
+
+TEST(Atlas, one_wall_alike_in_rooms_that_differ_joins_no_robots) {
+  const FeatureWorld world = FeatureWorld::noisy(1), other = FeatureWorld::noisy(2);
+  Atlas atlas({}), of_dora({});
+  AtlasRobot anna("anna", world, 0), dora("dora", other, 0);
+  anna.walk(200, atlas);
+  dora.walk(500, of_dora);
+  const std::vector<SentKeyframe> room = keyframes_of(anna), other_room = keyframes_of(dora);
+  ASSERT_GE(room.size(), 4U);
+  ASSERT_GE(other_room.size(), 5U);
+  Sender bert("bert");
+  bert.send(atlas, other_room, Eigen::Isometry3d::Identity());
+  bert.send(atlas, {room.begin(), room.begin() + 4}, Eigen::Isometry3d::Identity());
+  EXPECT_GE(atlas.counters().met, 3U) << "the wall is found";
+  EXPECT_EQ(atlas.counters().meetings, 0U) << "where both have looked, nothing else is";
+}
+
 TEST(Atlas, knows_that_it_changed) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas atlas({});

@@ -77,19 +77,38 @@ Eigen::Isometry3d correction(const Keyframe& keyframe, const PlaceMeeting& meeti
   return meeting.T_world_camera * keyframe.T_world_camera.inverse();
 }
 
+PlaceMeeting meeting_of(const LocalMap& place, const LocalMapTracking& tracking) {
+  return {vote_reference(place, tracking.guess.landmarks), tracking.guess.T_world_camera, tracking.guess.landmarks,
+          tracking.guess.inliers, found_share(tracking)};
+}
+
+std::int64_t no_clock() {
+  return 0;
+}
+
 }  // namespace
 
 std::optional<PlaceMeeting> meet_place(const Map& map, const Frame& frame, KeyframeId candidate,
                                        const SlamConfig& config) {
   const LocalMapPtr place = make_local_map(map, candidate, 0, kPlaceKeyframes);
-  const Clock no_clock = [] { return std::int64_t{0}; };
-  const TrackingContext context{config, no_clock};
-  const auto tracking = track_place(frame, *place, context);
+  const auto tracking = track_place(frame, *place, {config, no_clock});
   if (!tracking || !tracking->guess.success || tracking->guess.inliers < config.loop.min_inliers) return std::nullopt;
-  const double share = found_share(*tracking);
-  if (share < config.loop.min_found_share) return std::nullopt;
-  return PlaceMeeting{vote_reference(*place, tracking->guess.landmarks), tracking->guess.T_world_camera,
-                      tracking->guess.landmarks, tracking->guess.inliers, share};
+  const PlaceMeeting meeting = meeting_of(*place, *tracking);
+  if (meeting.found_share < config.loop.min_found_share) return std::nullopt;
+  return meeting;
+}
+
+std::optional<PlaceMeeting> look_again(const Map& map, const Frame& frame, KeyframeId candidate,
+                                       const Eigen::Isometry3d& T_world_camera, const SlamConfig& config) {
+  constexpr double kWide = 4;  // where a decimetre takes a landmark 3 m away
+  const LocalMapPtr place = make_local_map(map, candidate, 0, kPlaceKeyframes);
+  SlamConfig wide = config;
+  wide.tracker.local_radius_px *= kWide;
+  PoseGuess start;
+  start.T_world_camera = T_world_camera;
+  const auto tracking = track_place_from(frame, *place, start, {wide, no_clock});
+  if (!tracking || !tracking->guess.success) return std::nullopt;
+  return meeting_of(*place, *tracking);
 }
 
 bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_new_old,

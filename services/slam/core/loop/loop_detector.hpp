@@ -26,6 +26,9 @@ struct PlaceMeeting {
 /// fewer than `min_inliers` landmarks or `min_found_share`. docs/theory/loop_closing.md, "Verification".
 std::optional<PlaceMeeting> meet_place(const Map& map, const Frame& frame, KeyframeId candidate,
                                        const SlamConfig& config);
+/// What a frame finds of a place from a pose that is known to about 0.1 m, however little; empty when that is no pose.
+std::optional<PlaceMeeting> look_again(const Map& map, const Frame& frame, KeyframeId candidate,
+                                       const Eigen::Isometry3d& T_world_camera, const SlamConfig& config);
 
 /// Whether two corrections T_world_new = T_new_old T_world_old move a camera at T_old_camera to about the same place.
 bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_new_old,

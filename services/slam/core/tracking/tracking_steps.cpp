@@ -342,8 +342,12 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
 
 std::optional<LocalMapTracking> track_place(const Frame& frame, const LocalMap& place, const TrackingContext& context) {
   const PoseGuess coarse = track_keyframe(frame, place.keyframes.front(), place, context);
-  if (!coarse.success) return std::nullopt;
-  const LocalMapTracking tracking = track_local_map(frame, place, coarse, context);
+  return coarse.success ? track_place_from(frame, place, coarse, context) : std::nullopt;
+}
+
+std::optional<LocalMapTracking> track_place_from(const Frame& frame, const LocalMap& place, const PoseGuess& start,
+                                                 const TrackingContext& context) {
+  const LocalMapTracking tracking = track_local_map(frame, place, start, context);
   if (!tracking.guess.success) return std::nullopt;
   return track_local_map(frame, place, tracking.guess, context);
 }

@@ -99,5 +99,8 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
 /// Frame to a recognised place: track_keyframe() with its centre, then twice track_local_map(), because from a coarse
 /// pose many landmarks are missed. Empty when one of the first two fails.
 std::optional<LocalMapTracking> track_place(const Frame& frame, const LocalMap& place, const TrackingContext& context);
+/// The same from a first guess of the pose.
+std::optional<LocalMapTracking> track_place_from(const Frame& frame, const LocalMap& place, const PoseGuess& start,
+                                                 const TrackingContext& context);
 
 }  // namespace rtd::slam
