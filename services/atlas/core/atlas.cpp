@@ -78,6 +78,7 @@ bool Atlas::add(const std::string& name, const msg::KeyframeFeatures& message) {
     ++counters_.broken;
     return false;
   }
+  if (settle_claim(name, robot, message.keyframe_id, *frame)) return true;
   const Announced* parent = choose_parent(robot, message.keyframe_id);
   Eigen::Isometry3d T_world_camera = announced.T_robot_camera;
   if (parent != nullptr) {

@@ -89,7 +89,8 @@ class Atlas {
   /// Those whose features are wanted, the newest first; at most `limit`. What has given way, to newer ones of its place
   /// or because there is too much, is not wanted again until a robot is forgotten.
   msg::KeyframeRequest missing(const std::string& robot, std::size_t limit);
-  /// The features of one of them; looks whether it meets the map of another robot. True when it was taken.
+  /// The features of one of them; looks whether it meets the map of another robot. True when it was taken
+  /// or is here already.
   bool add(const std::string& robot, const msg::KeyframeFeatures& message);
   /// Where in the joint map a frame is, with the map around it; empty when it is not recognised.
   std::optional<msg::Submap> locate(const msg::KeyframeFeatures& message) const;
@@ -136,6 +137,7 @@ class Atlas {
     double behind_s = kUnknown_s;                             ///< that its clock is behind, at most
     std::map<KeyframeId, Announced> keyframes;                ///< by its own ids
     std::set<KeyframeId> here, wanted;                        ///< of these; the others have given way
+    std::map<KeyframeId, KeyframeId> claimed;                 ///< of what is wanted: which ones here they may be
     std::unordered_map<std::uint32_t, LandmarkId> landmarks;  ///< by its own ids
     std::size_t living_landmarks = 0;                         ///< of these, when they were last checked
     std::vector<Meeting> undecided;                           ///< that too few others agree with
@@ -152,6 +154,7 @@ class Atlas {
 
   KeyframeId find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const;
   void follow(const std::string& name, Robot& robot, const msg::MapKeyframe& entry);
+  bool settle_claim(const std::string& name, Robot& robot, KeyframeId id, const slam::Frame& frame);
   void withdraw(const std::string& name, Robot& robot, KeyframeId id);
   const Announced* choose_parent(const Robot& robot, KeyframeId id) const;
   static const Announced* newest_known(const Robot& robot);

@@ -24,8 +24,8 @@ static bool has_moved(const Eigen::Isometry3d& T_before, const Eigen::Isometry3d
   return T.translation().norm() > kMoved_m || geometry::rotation_angle_rad(T) > kMoved_rad;
 }
 
-/// A keyframe that is here already: of this robot, before its map or this process began again, or of the map that the
-/// robot was given and that has the same ids.
+/// A keyframe that may be here already: of this robot, before its map or this process began again, or of the map that
+/// the robot was given and that has the same ids. Robots in a simulation share a clock, so stamps alone prove nothing.
 KeyframeId Atlas::find_known(const std::string& robot, KeyframeId id, std::int64_t stamp_ns) const {
   const auto [first, last] = by_stamp_.equal_range(stamp_ns);
   for (auto it = first; it != last; ++it)
@@ -69,13 +69,37 @@ void Atlas::follow(const std::string& name, Robot& robot, const msg::MapKeyframe
   announced.map = entry.map_id;
   if ((entry.content & msg::kMapEdges) != 0) announced.covisible = entry.covisible;
   if (is_new) {
-    announced.keyframe = find_known(name, entry.keyframe_id, entry.stamp_ns);
-    (announced.keyframe == kNoKeyframe ? robot.wanted : robot.here).insert(entry.keyframe_id);
-    if (const auto source = sources_.find(announced.keyframe); source != sources_.end() && source->second.robot == name)
-      source->second.id = entry.keyframe_id;  // after a restart
+    robot.wanted.insert(entry.keyframe_id);
+    const KeyframeId here = find_known(name, entry.keyframe_id, entry.stamp_ns);
+    if (here != kNoKeyframe) robot.claimed[entry.keyframe_id] = here;
   } else if (robot.here.contains(entry.keyframe_id) && has_moved(T_before, announced.T_robot_camera)) {
     crooked_[world_of(announced.keyframe)] = name;
   }
+}
+
+/// Whether a keyframe shows the same image as the one that it may be. If so, the others that were announced with it are
+/// here as well; if not, each of them is looked at in its turn.
+bool Atlas::settle_claim(const std::string& name, Robot& robot, KeyframeId id, const slam::Frame& frame) {
+  constexpr double kAlmostAll = 0.9;
+  const auto claim = robot.claimed.find(id);
+  if (claim == robot.claimed.end()) return false;
+  std::set<msg::Descriptor> known;
+  if (const Keyframe* keyframe = map_.find_keyframe(claim->second))
+    for (const msg::Feature& feature : keyframe->frame->features) known.insert(feature.descriptor);
+  const auto shown = std::ranges::count_if(frame.features, [&](const auto& f) { return known.contains(f.descriptor); });
+  if (static_cast<double>(shown) < kAlmostAll * static_cast<double>(frame.features.size())) {
+    robot.claimed.erase(claim);
+    return false;
+  }
+  for (const auto& [own, keyframe] : std::exchange(robot.claimed, {})) {
+    const auto source = sources_.find(keyframe);
+    if (source == sources_.end()) continue;
+    robot.keyframes.at(own).keyframe = keyframe;
+    robot.wanted.erase(own);
+    robot.here.insert(own);
+    if (source->second.robot == name) source->second.id = own;  // after a restart
+  }
+  return true;
 }
 
 /// The robot has removed it.
@@ -87,6 +111,7 @@ void Atlas::withdraw(const std::string& name, Robot& robot, KeyframeId id) {
   robot.keyframes.erase(known);
   robot.here.erase(id);
   robot.wanted.erase(id);
+  robot.claimed.erase(id);
 }
 
 const Atlas::Announced* Atlas::newest_known(const Robot& robot) {
@@ -117,6 +142,10 @@ msg::KeyframeRequest Atlas::missing(const std::string& name, std::size_t limit) 
   Robot& robot = found->second;
   msg::KeyframeRequest request;
   request.session_ns = robot.session_ns;
+  if (!robot.claimed.empty()) {
+    request.keyframe_ids.push_back(robot.claimed.rbegin()->first);
+    return request;
+  }
   const Announced* newest = newest_known(robot);
   const Keyframe* known = newest == nullptr ? nullptr : map_.find_keyframe(newest->keyframe);
   Eigen::Isometry3d T_world_robot = Eigen::Isometry3d::Identity();

@@ -51,6 +51,18 @@ TEST(Atlas, robots_in_other_rooms_do_not) {
   EXPECT_EQ(atlas.counters().meetings, 0U);
 }
 
+TEST(Atlas, robots_that_share_a_clock_share_nothing_else) {
+  const FeatureWorld world = FeatureWorld::noisy(1), other = FeatureWorld::noisy(2);
+  Atlas atlas({});
+  AtlasRobot anna("anna", world, 0), bert("bert", other, 0);
+  for (int i = 0; i < 10; ++i) {
+    anna.walk(45, atlas);
+    bert.walk(45, atlas);
+  }
+  EXPECT_FALSE(robot_in(atlas.state(), "bert").met) << "equal stamps and numbers, as in a simulation";
+  EXPECT_GT(robot_in(atlas.state(), "bert").keyframes, 1U);
+}
+
 TEST(Atlas, a_robot_that_starts_anywhere_gets_the_map_around_it) {
   const FeatureWorld world = FeatureWorld::noisy();
   Atlas atlas({});
