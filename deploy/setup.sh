@@ -35,7 +35,7 @@ packages=(
   build-essential cmake ninja-build
   libfastcdr-dev fastdds-tools
   cyclonedds-dev
-  libopencv-dev libjpeg62-turbo-dev libpng-dev libtiff-dev libeigen3-dev libceres-dev
+  libopencv-dev libjpeg62-turbo-dev libpng-dev libtiff-dev libopenexr-dev libeigen3-dev libceres-dev
   libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev libsystemd-dev nlohmann-json3-dev libtinyxml2-dev
   zlib1g-dev libdeflate-dev libbz2-dev liblz4-dev libzstd-dev libssl-dev
   python3 python3-numpy python3-onnx

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/camera/depth_formats.hpp"
 
+#include <half.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -63,7 +64,7 @@ double value_at(Bytes bytes, std::size_t index) {
 }
 
 double half_at(Bytes bytes, std::size_t index) {
-  return static_cast<double>(half_to_float(static_cast<std::uint16_t>(value_at<std::uint16_t>(bytes, index))));
+  return static_cast<double>(imath_half_to_float(static_cast<std::uint16_t>(value_at<std::uint16_t>(bytes, index))));
 }
 
 struct NumberType {
@@ -115,14 +116,6 @@ cv::Mat pnm_pixels(const std::uint8_t* from, cv::Size size_px, bool color, bool 
 bool is_raster_size(std::int64_t width, std::int64_t height, std::int64_t times) {
   const std::int64_t most = times * vision::DecodeRules::kMaxStreamPixels;
   return width > 0 && height > 0 && width <= most && height <= most && width * height <= most;
-}
-
-float half_to_float(std::uint16_t half) {
-  const int exponent = (half >> 10) & 0x1F, mantissa = half & 0x3FF;
-  const float sign = (half & 0x8000) != 0 ? -1.0F : 1.0F;
-  if (exponent == 0) return sign * std::ldexp(static_cast<float>(mantissa), -24);
-  if (exponent == 31) return mantissa == 0 ? sign * INFINITY : NAN;
-  return sign * std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25);
 }
 
 std::vector<std::uint8_t> inflate_at_most(Bytes packed, std::size_t size) {

@@ -32,9 +32,6 @@ vision::DecodedImage decode_pnm(std::span<const std::uint8_t> bytes);
 /// True for an image of up to a frame's pixels, or so many times that.
 bool is_raster_size(std::int64_t width, std::int64_t height, std::int64_t times = 1);
 
-/// IEEE 754 binary16.
-float half_to_float(std::uint16_t half);
-
 /// The `size` bytes that a zlib or gzip stream holds; fewer, or none: it is damaged. Takes no memory when the stream is
 /// too short to hold them.
 std::vector<std::uint8_t> inflate_at_most(std::span<const std::uint8_t> packed, std::size_t size);

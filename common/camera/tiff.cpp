@@ -1,12 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #define TIFF_DISABLE_DEPRECATED  // its types of the names of OpenCV's
-#include <tiffio.h>
+#include <tiffio.hxx>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
@@ -23,47 +24,12 @@ class TiffError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The file, as libtiff reads it.
-struct TiffMemory {
-  Bytes bytes;
-  std::size_t at = 0;
-};
-
-tmsize_t read_memory(thandle_t handle, void* to, tmsize_t size) {
-  TiffMemory& memory = *static_cast<TiffMemory*>(handle);
-  const std::size_t count = std::min(static_cast<std::size_t>(size), memory.bytes.size() - memory.at);
-  std::memcpy(to, memory.bytes.data() + memory.at, count);
-  memory.at += count;
-  return static_cast<tmsize_t>(count);
-}
-
-tmsize_t write_nothing(thandle_t, void*, tmsize_t) {
-  return 0;
-}
-
-/// libtiff seeks from the begin only, when it reads.
-toff_t seek_memory(thandle_t handle, toff_t offset, int) {
-  TiffMemory& memory = *static_cast<TiffMemory*>(handle);
-  memory.at = static_cast<std::size_t>(std::min<toff_t>(offset, memory.bytes.size()));
-  return memory.at;
-}
-
-int close_memory(thandle_t) {
-  return 0;
-}
-
-toff_t size_of_memory(thandle_t handle) {
-  return static_cast<TiffMemory*>(handle)->bytes.size();
-}
-
 class TiffReader {
  public:
-  explicit TiffReader(Bytes bytes) : memory_{bytes}, unread_(bytes.size()) {
+  explicit TiffReader(Bytes bytes) : stream_({bytes.begin(), bytes.end()}), unread_(bytes.size()) {
     static const bool silent = TIFFSetErrorHandler(nullptr) != TIFFSetWarningHandler(nullptr);
     static_cast<void>(silent);  // libtiff would write to stderr
-    // m: not mapped; c: strips as they are in the file
-    file_.reset(TIFFClientOpen("depth", "rmc", &memory_, read_memory, write_nothing, seek_memory, close_memory,
-                               size_of_memory, nullptr, nullptr));
+    file_.reset(TIFFStreamOpen("depth", &stream_));
     if (!file_) throw TiffError("is truncated or damaged");
   }
 
@@ -140,7 +106,7 @@ class TiffReader {
   struct Close {
     void operator()(TIFF* file) const { TIFFClose(file); }
   };
-  TiffMemory memory_;
+  std::istringstream stream_;
   std::unique_ptr<TIFF, Close> file_;
   std::uint64_t unread_;  ///< bytes that no piece has had: pieces do not overlap
   cv::Mat image_;

@@ -47,9 +47,8 @@ struct Exr {
   bool one_block;            ///< for all lines
 };
 
-void attribute(Bytes& bytes, const std::string& name, const Bytes& value) {
-  put(bytes, bytes_of(name));
-  put(bytes, Bytes{0, 't', 0});
+void attribute(Bytes& bytes, const std::string& name, const std::string& type, const Bytes& value) {
+  put(bytes, bytes_of(name + '\0' + type + '\0'));
   put(bytes, static_cast<std::uint32_t>(value.size()));
   put(bytes, value);
 }
@@ -62,9 +61,14 @@ Bytes exr(const Exr& of) {
   }
   channels.push_back(0);
   for (const std::int32_t number : {0, 0, of.width - 1, of.height - 1}) put(window, number);
-  attribute(bytes, "channels", channels);
-  attribute(bytes, "compression", {of.compression});
-  attribute(bytes, "dataWindow", window);
+  attribute(bytes, "channels", "chlist", channels);
+  attribute(bytes, "compression", "compression", {of.compression});
+  attribute(bytes, "dataWindow", "box2i", window);
+  attribute(bytes, "displayWindow", "box2i", window);
+  attribute(bytes, "lineOrder", "lineOrder", {0});
+  attribute(bytes, "pixelAspectRatio", "float", {0, 0, 0x80, 0x3F});
+  attribute(bytes, "screenWindowCenter", "v2f", Bytes(8));
+  attribute(bytes, "screenWindowWidth", "float", {0, 0, 0x80, 0x3F});
   bytes.push_back(0);
   const std::int32_t lines = of.compression == 3 ? 16 : 1, blocks = (of.height + lines - 1) / lines;
   const std::size_t unpacked =
