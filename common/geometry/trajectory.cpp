@@ -117,12 +117,13 @@ Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Qua
   return T_world_body;
 }
 
-void append_in_order(Trajectory& trajectory, const StampedPose& pose) {
-  if (!trajectory.empty() && pose.stamp_ns < trajectory.back().stamp_ns) {
-    throw std::invalid_argument("stamp is earlier than the one before it; sort the file by its first column");
+Trajectory each_stamp_once(const Trajectory& ordered) {
+  Trajectory trajectory;
+  for (const StampedPose& pose : ordered) {
+    if (!trajectory.empty() && trajectory.back().stamp_ns == pose.stamp_ns) trajectory.pop_back();
+    trajectory.push_back(pose);
   }
-  if (!trajectory.empty() && pose.stamp_ns == trajectory.back().stamp_ns) trajectory.pop_back();
-  trajectory.push_back(pose);
+  return trajectory;
 }
 
 std::vector<Trajectory> split_where_time_goes_back(const Trajectory& poses) {

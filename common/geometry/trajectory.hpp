@@ -55,9 +55,8 @@ class TrajectoryError : public std::runtime_error {
 /// long or short (else it is normalised).
 Eigen::Isometry3d make_pose(const Eigen::Vector3d& translation, const Eigen::Quaterniond& rotation);
 
-/// Appends a pose of a file; one with the stamp of the last replaces it. Throws std::invalid_argument for a stamp that
-/// goes back.
-void append_in_order(Trajectory& trajectory, const StampedPose& pose);
+/// Of poses with one stamp, the last stays.
+Trajectory each_stamp_once(const Trajectory& ordered);
 
 /// The parts in which stamps never go back, in their order: a recording that is played twice gives two. At least one.
 std::vector<Trajectory> split_where_time_goes_back(const Trajectory& poses);

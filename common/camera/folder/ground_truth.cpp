@@ -12,110 +12,11 @@
 #include "common/geometry/pose_list.hpp"
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"
-#include "common/io/text.hpp"
 
 namespace rtd::camera {
 namespace {
 
-using Numbers = std::vector<double>;
 using Pose = Eigen::Isometry3d;
-
-/// What a table without stamps, or EuRoC's, holds; poses without stamps count from 0.
-struct Table {
-  geometry::Trajectory poses;
-  bool stamped = false;
-  std::size_t left_out = 0;
-  std::string problem;  ///< the first row that was left out
-};
-
-std::optional<Pose> to_pose(const Eigen::Vector3d& t, double qx, double qy, double qz, double qw) {
-  try {
-    return geometry::make_pose(t, Eigen::Quaterniond(qw, qx, qy, qz));
-  } catch (const std::invalid_argument&) {
-    return std::nullopt;
-  }
-}
-
-/// The upper three rows of a matrix, row by row.
-std::optional<Pose> matrix_pose(const double* m) {
-  constexpr double kNearlyOrthonormal = 0.05;
-  Eigen::Matrix3d rotation;
-  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-  if (!((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < kNearlyOrthonormal))
-    return std::nullopt;
-  if (rotation.determinant() < 0) return std::nullopt;
-  const Eigen::Quaterniond q(rotation);
-  return to_pose({m[3], m[7], m[11]}, q.x(), q.y(), q.z(), q.w());
-}
-
-/// Seconds with all their digits, or nanoseconds.
-std::optional<std::int64_t> stamp_of(const std::string& text) {
-  constexpr double kLatest_s = 1e10;
-  const std::optional<double> number = io::parse_number(text);
-  if (!number || !std::isfinite(*number) || std::abs(*number) > 9e18) return std::nullopt;
-  if (std::abs(*number) < kLatest_s) return io::parse_stamp_ns(text);
-  const bool whole = text.find_first_not_of("0123456789") == std::string::npos;
-  return whole && text.size() < 19 + 1 ? static_cast<std::int64_t>(std::stoull(text)) : std::llround(*number);
-}
-
-bool is_csv(const std::filesystem::path& file) {
-  return file.extension() == ".csv";
-}
-
-/// Reads what has no stamps, and EuRoC's table; stamped poses of others are read_pose_list()'s.
-class TableReader {
- public:
-  Table read(const std::string& text, bool csv) {
-    for (const io::TextLine& line : io::split_lines(text, " \t\r\v\f,;[]")) take(line, csv);
-    std::ranges::stable_sort(table_.poses, {}, &geometry::StampedPose::stamp_ns);
-    const auto repeated = std::ranges::unique(table_.poses, {}, &geometry::StampedPose::stamp_ns);
-    table_.poses.erase(repeated.begin(), repeated.end());
-    return table_;
-  }
-
- private:
-  void take(const io::TextLine& line, bool csv) {
-    Numbers n;
-    for (const std::string& field : line.fields) {
-      const std::optional<double> number = io::parse_number(field);
-      if (!number) return leave_out(line);
-      n.push_back(*number);
-    }
-    if (n.size() == 3) return rows_.clear();  // the line before a matrix
-    if (n.size() == 4) return take_row(n, line);
-    if (n.size() == 12 || n.size() == 16) return add(count_++, matrix_pose(n.data()), line);
-    if (n.size() == 7) return add(count_++, to_pose({n[0], n[1], n[2]}, n[3], n[4], n[5], n[6]), line);
-    const std::optional<std::int64_t> stamp_ns = stamp_of(line.fields[0]);
-    const bool euroc = n.size() > 8 || (csv && n.size() == 8);
-    if (!stamp_ns || !euroc) return leave_out(line);
-    table_.stamped = true;
-    add(*stamp_ns, to_pose({n[1], n[2], n[3]}, n[5], n[6], n[7], n[4]), line);
-  }
-
-  void take_row(const Numbers& row, const io::TextLine& line) {
-    rows_.insert(rows_.end(), row.begin(), row.end());
-    if (rows_.size() < 16) return;
-    add(count_++, matrix_pose(rows_.data()), line);
-    rows_.clear();
-  }
-
-  /// A row without a stamp takes a place even where it is no pose.
-  void add(std::int64_t stamp_ns, const std::optional<Pose>& pose, const io::TextLine& line) {
-    if (!pose) return leave_out(line);
-    table_.poses.push_back({stamp_ns, *pose});
-  }
-
-  void leave_out(const io::TextLine& line) {
-    if (table_.left_out++ == 0) table_.problem = fmt::format("line {} is no pose", line.number);
-  }
-
-  Table table_;
-  Numbers rows_;
-  std::int64_t count_ = 0;
-
- public:
-  std::int64_t count() const { return count_; }
-};
 
 /// What a pose in the axes of the dataset is in ours.
 Pose in_optical_axes(const Pose& T_world_body, PoseAxes axes, bool y_up) {
@@ -148,82 +49,57 @@ std::vector<std::int64_t> image_stamps(const FolderContents& contents, const Pai
   return stamps_ns;
 }
 
-/// Gives poses that count from 0 the stamps of the images; false when there are not as many.
-bool give_stamps(geometry::Trajectory& poses, std::int64_t count, const std::vector<std::int64_t>& images_ns) {
-  if (count != static_cast<std::int64_t>(images_ns.size())) return false;
-  for (geometry::StampedPose& pose : poses) pose.stamp_ns = images_ns[static_cast<std::size_t>(pose.stamp_ns)];
-  return true;
-}
-
 /// Throws io::IoError.
 std::string text_of(const FolderContents& contents, const std::string& file) {
   return io::read_file(contents.folder / file, io::kPoses, contents.below(file));
 }
 
+GroundTruth not_used(const std::string& note, const std::string& cause) {
+  return {{}, note, {"ground truth not used: " + cause}};
+}
+
+/// A pose of a file with one; empty for any other.
+std::optional<Pose> read_pose_file(const std::string& text, const std::string& name) {
+  try {
+    const geometry::PoseList list = geometry::read_pose_list(text, name);
+    if (list.places == 1) return list.poses.front().T_world_body;
+  } catch (const geometry::TrajectoryError&) {
+  }
+  return std::nullopt;
+}
+
 GroundTruth read_pose_files(const FolderContents& contents, const PairList& list) {
   const NamedFrames named = read_frame_names(contents.poses);
-  GroundTruth truth;
-  std::size_t left_out = 0;
-  for (std::size_t i = 0; i < contents.poses.size(); ++i) {
-    const Table one = TableReader().read(text_of(contents, contents.poses[i]), false);
-    const bool fits = one.poses.size() == 1 && !one.stamped;
-    left_out += !fits;
-    if (fits)
-      truth.poses.push_back({named.files.empty() ? static_cast<std::int64_t>(i) : named.files[i].stamp_ns,
-                             one.poses.front().T_world_body});
+  geometry::PoseList truth;
+  for (const std::string& file : contents.poses) {
+    const std::size_t i = truth.places++;
+    if (const std::optional<Pose> pose = read_pose_file(text_of(contents, file), file))
+      truth.poses.push_back({named.files.empty() ? static_cast<std::int64_t>(i) : named.files[i].stamp_ns, *pose});
   }
   std::ranges::sort(truth.poses, {}, &geometry::StampedPose::stamp_ns);
-  truth.note = fmt::format("{} matrices next to {}", truth.poses.size(), contents.poses.front());
-  if (left_out > 0) truth.note += fmt::format(", {} left out that are no poses", left_out);
-  if (named.files.empty() &&
-      !give_stamps(truth.poses, static_cast<std::int64_t>(contents.poses.size()), image_stamps(contents, list)))
-    return {{}, truth.note, {"ground truth not used: the names of its files do not fit those of the images"}};
-  return truth;
-}
-
-std::string poses_of(std::size_t poses, const FolderContents& contents) {
-  return fmt::format("{} poses of {}", poses, contents.poses.front());
-}
-
-/// Empty where it is another kind of table; then `problem` says what a list of stamped poses would need.
-std::optional<GroundTruth> read_stamped(const FolderContents& contents, const std::string& text, std::string& problem) {
-  try {
-    geometry::PoseList list = geometry::read_pose_list(text, (contents.folder / contents.poses.front()).string());
-    std::ranges::move(list.damages, std::back_inserter(list.notes));
-    const std::size_t poses = list.poses.size();
-    return GroundTruth{std::move(list.poses), poses_of(poses, contents), std::move(list.notes)};
-  } catch (const geometry::TrajectoryError& error) {
-    problem = error.what();
-    return std::nullopt;
-  }
+  std::string note = fmt::format("{} matrices next to {}", truth.poses.size(), contents.poses.front());
+  if (const std::size_t lost = truth.places - truth.poses.size(); lost > 0)
+    note += fmt::format(", {} left out that are no poses", lost);
+  if (named.files.empty() && !geometry::give_stamps(truth, image_stamps(contents, list)))
+    return not_used(note, "the names of its files do not fit those of the images");
+  return {std::move(truth.poses), note, {}};
 }
 
 GroundTruth read_table(const FolderContents& contents, const PairList& list) {
-  const std::filesystem::path file = contents.folder / contents.poses.front();
-  const std::string text = text_of(contents, contents.poses.front());
-  std::string problem;
-  if (!is_csv(file)) {
-    if (std::optional<GroundTruth> stamped = read_stamped(contents, text, problem)) return std::move(*stamped);
+  const std::string file = (contents.folder / contents.poses.front()).string();
+  const auto note = [&](std::size_t poses) { return fmt::format("{} poses of {}", poses, contents.poses.front()); };
+  try {
+    geometry::PoseList table = geometry::read_pose_list(text_of(contents, contents.poses.front()), file);
+    const std::size_t poses = table.poses.size();
+    if (const auto images_ns = image_stamps(contents, list);
+        table.places > 0 && !geometry::give_stamps(table, images_ns))
+      return not_used(note(poses), fmt::format("{} has {} poses without stamps, there are {} images", file,
+                                               table.places, images_ns.size()));
+    std::ranges::move(table.damages, std::back_inserter(table.notes));
+    return {std::move(table.poses), note(poses), std::move(table.notes)};
+  } catch (const geometry::TrajectoryError& error) {
+    return not_used(note(0), error.what());
   }
-  TableReader reader;
-  Table table = reader.read(text, is_csv(file));
-  const std::string note = poses_of(table.poses.size(), contents);
-  std::vector<std::string> remarks;
-  if (table.left_out > 0)
-    remarks.push_back(fmt::format("{}: {} rows left out, first: {}", file.string(), table.left_out, table.problem));
-  if (table.poses.empty()) {
-    const std::string& cause = problem.empty() ? table.problem : problem;
-    return {{}, note, {"ground truth not used: " + (cause.empty() ? file.string() + ": holds no poses" : cause)}};
-  }
-  if (!table.stamped) {
-    const std::vector<std::int64_t> images_ns = image_stamps(contents, list);
-    if (!give_stamps(table.poses, reader.count(), images_ns))
-      return {{},
-              note,
-              {fmt::format("ground truth not used: {} has {} poses without stamps, there are {} images", file.string(),
-                           reader.count(), images_ns.size())}};
-  }
-  return {std::move(table.poses), note, std::move(remarks)};
 }
 
 }  // namespace

@@ -18,12 +18,9 @@ struct GroundTruth {
   std::vector<std::string> remarks;  ///< what was left out, or why it is not used
 };
 
-/// Reads one file for each frame (4 x 4 or 3 x 4 matrices), or a table: all that read_pose_list() reads (TUM's),
-/// EuRoC's CSV (nanoseconds, qw first), KITTI's 12 or 16 columns, `tx ty tz qx qy qz qw`, 4 x 4 matrices below each
-/// other with or without a line of three numbers before each (Redwood, Open3D). Rows without stamps belong to the
-/// images in order. Rows that are no poses (titles, NaN) are left out and counted. `y_up`: the poses are those of a
-/// camera whose y axis points up, in a left-handed world (ICL-NUIM). Never throws for what a file says: SLAM needs no
-/// ground truth.
+/// Reads one file for each frame (4 x 4 or 3 x 4 matrices), or a table: all that read_pose_list() reads. Rows without
+/// stamps belong to the images in order. `y_up`: the poses are those of a camera whose y axis points up, in a
+/// left-handed world (ICL-NUIM). Never throws for what a file says: SLAM needs no ground truth.
 GroundTruth read_ground_truth(const FolderContents& contents, const PairList& list, bool y_up);
 
 /// Poses for frames that got other stamps: for each frame the pose that it had at its old stamp.

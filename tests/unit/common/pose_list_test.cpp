@@ -65,6 +65,23 @@ TEST(PoseList, reads_the_forms_of_others) {
       << "stamp in a name";
 }
 
+TEST(PoseList, counts_poses_without_stamps_and_gives_them_those_of_their_places) {
+  const std::string row = "1 0 0 7 0 1 0 0 0 0 1 0\n", matrix = "1 0 0 7\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  for (const std::string& text :
+       {row + "1 0 0 nan 0 1 0 0 0 0 1 0\n" + row,
+        "0\t0\t1\n" + matrix + "1 1 2\n" + "inf " + matrix.substr(2) + matrix,
+        std::string("7 0 0 0 0 0 1\nnan 0 0 0 0 0 1\n7 0 0 0 0 0 1\n"),
+        "[[" + row.substr(0, 8) + "]\n[0 1 0 0]\n[0 0 1 0]\n[0 0 0 1]]\ninf" + matrix.substr(1) + matrix}) {
+    PoseList list = read_text_of(text);
+    EXPECT_EQ(list.places, 3U) << text;
+    EXPECT_THAT(list.notes, ElementsAre("truth.txt: 1 row of nan left out"));
+    EXPECT_FALSE(give_stamps(list, {10, 20}));
+    ASSERT_TRUE(give_stamps(list, {10, 20, 30})) << text;
+    EXPECT_THAT(stamps_of(list.poses), ElementsAre(10, 30)) << text;
+    EXPECT_EQ(list.poses[1].T_world_body.translation().x(), 7) << text;
+  }
+}
+
 TEST(PoseList, takes_the_longest_segment_where_stamps_go_back) {
   const PoseList twice = read_text_of(rising_rows(0, 8) + rising_rows(0, 12));
   EXPECT_THAT(twice.poses, SizeIs(12));

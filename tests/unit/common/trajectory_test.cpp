@@ -105,7 +105,7 @@ TEST_P(TumTrajectoryRejects, with_line_and_cause) {
 
 INSTANTIATE_TEST_SUITE_P(
     BadInput, TumTrajectoryRejects,
-    testing::Values(BadFile{"few_columns", "# c\n1 0 0 0 0 0 1\n", "est.txt:2:", "7 columns instead of 8"},
+    testing::Values(BadFile{"few_columns", "# c\n1 0 0 0 0 1\n", "est.txt:2:", "6 columns instead of 8"},
                     BadFile{"many_columns", "1 0 0 0 0 0 0 1 9\n", "est.txt:1:", "9 columns instead of 8"},
                     BadFile{"word", "1 0 zero 0 0 0 0 1\n", "est.txt:1:", "'zero' is not a number"},
                     BadFile{"tail", "1 0 0 0 0 0 0 1x\n", "est.txt:1:", "'1x' is not a number"},

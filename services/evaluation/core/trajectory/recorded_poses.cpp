@@ -187,10 +187,8 @@ class PoseReader {
   /// By stamps: publishers overtake each other. Of equal stamps the last counts.
   void finish(const std::string& topic) {
     std::ranges::stable_sort(result_.poses, {}, &StampedPose::stamp_ns);
-    geometry::Trajectory poses;
-    for (const StampedPose& pose : result_.poses) geometry::append_in_order(poses, pose);
-    if (poses.empty()) fail("topic " + topic + " has no poses that can be read");
-    result_.poses = std::move(poses);
+    result_.poses = geometry::each_stamp_once(result_.poses);
+    if (result_.poses.empty()) fail("topic " + topic + " has no poses that can be read");
   }
 
   recordings::Reader& recording_;
