@@ -173,12 +173,9 @@ std::string drawing(const std::vector<Judged>& all, const EvalOptions& options) 
   Trajectory groundtruth = all.front().inputs.groundtruth;  // on the estimates' clock, which is the plot's
   const std::int64_t offset_ns = std::llround(options.offset_s * 1e9);
   for (StampedPose& pose : groundtruth) pose.stamp_ns -= offset_ns;
-  if (all.size() == 1)
-    return evaluation_svg(all.front().evaluation.ate, groundtruth,
-                          std::filesystem::path(all.front().inputs.name).filename().string());
   std::vector<NamedAte> named;
   for (const Judged& judged : all) named.push_back({judged.inputs.name, &judged.evaluation.ate});
-  return comparison_svg(named, groundtruth);
+  return evaluation_svg(named, groundtruth);
 }
 
 void write_plot(const std::vector<Judged>& all, const EvalOptions& options) {

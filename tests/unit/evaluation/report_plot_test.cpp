@@ -98,14 +98,5 @@ TEST(Svg, escapes_text) {
   EXPECT_THAT(svg.str(), HasSubstr("aria-label=\"a&lt;b\""));
 }
 
-TEST(ErrorColour, runs_from_blue_to_red_and_clamps) {
-  EXPECT_EQ(error_colour(0), "#2350a0");
-  EXPECT_EQ(error_colour(1), "#c42026");
-  EXPECT_EQ(error_colour(-3), error_colour(0));
-  EXPECT_EQ(error_colour(7), error_colour(1));
-  EXPECT_EQ(error_colour(kNan), error_colour(1));
-  EXPECT_NE(error_colour(0.4), error_colour(0.6));
-}
-
 }  // namespace
 }  // namespace rtd::plot

@@ -13,10 +13,6 @@
 namespace rtd::plot {
 namespace {
 
-using Rgb = std::array<double, 3>;
-constexpr std::array<Rgb, 5> kErrorStops{
-    {{35, 80, 160}, {38, 148, 150}, {120, 178, 70}, {232, 155, 40}, {196, 32, 38}}};
-
 constexpr const char* kFonts =
     "system-ui,-apple-system,'Segoe UI',Roboto,'Helvetica Neue','DejaVu Sans',Arial,sans-serif";
 
@@ -69,17 +65,6 @@ double step_of(const std::vector<double>& ticks) {
 }
 
 }  // namespace
-
-std::string error_colour(double fraction) {
-  const double t = std::isfinite(fraction) ? std::clamp(fraction, 0.0, 1.0) : 1.0;
-  const double position = t * (kErrorStops.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(position), kErrorStops.size() - 2);
-  const auto mix = [&](std::size_t channel) {
-    return std::lround(
-        std::lerp(kErrorStops[below][channel], kErrorStops[below + 1][channel], position - static_cast<double>(below)));
-  };
-  return fmt::format("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2));
-}
 
 std::string escape_markup(const std::string& text) {
   constexpr std::string_view kSpecial = "&<>\"'";
@@ -237,13 +222,6 @@ void Chart::curve(const std::vector<double>& x, const std::vector<double>& y, co
   finish();
 }
 
-void Chart::level(double y, const std::string& label, const Stroke& stroke) {
-  if (!std::isfinite(y) || y < y_.min || y > y_.max) return;
-  const double right = area_.x + area_.width, y_px = at(0, y).y;
-  svg_.line({area_.x, y_px}, {right, y_px}, stroke);
-  svg_.text({right + 6, y_px + 4}, label, {stroke.colour, kTickTextSize, Anchor::kStart, true});
-}
-
 void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries) {
   for (const LegendEntry& entry : entries) {
     if (entry.dot) {
@@ -254,25 +232,6 @@ void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries) {
     svg.text({at.x + 24, at.y}, entry.text, {palette::kInk, 12});
     at.x += 24 + 6.6 * static_cast<double>(entry.text.size()) + 22;
   }
-}
-
-void draw_error_scale(Svg& svg, const Area& area, const ErrorScale& scale) {
-  constexpr int kSlices = 48;
-  for (int i = 0; i < kSlices; ++i) {
-    const double fraction = (i + 0.5) / kSlices;
-    svg.rect({area.x, area.y + area.height * (1 - (i + 1.0) / kSlices), area.width, area.height / kSlices + 0.6},
-             error_colour(fraction));
-  }
-  const std::vector<double> ticks = nice_ticks({0, scale.max}, 5);
-  for (const double tick : ticks) {
-    const double py = area.y + area.height * (1 - tick / scale.max);
-    svg.line({area.x + area.width, py}, {area.x + area.width + 4, py}, {palette::kMuted, 1});
-    svg.text({area.x + area.width + 8, py + 4}, tick_label(tick, step_of(ticks)), {palette::kMuted, kTickTextSize});
-  }
-  if (scale.open_ended) {
-    svg.text({area.x + area.width + 8, area.y + 4}, "more", {palette::kMuted, kTickTextSize, Anchor::kStart, true});
-  }
-  svg.text({area.x - 2, area.y - 10}, scale.title, {palette::kInk, 12});
 }
 
 }  // namespace rtd::plot

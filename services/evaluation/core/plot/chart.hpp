@@ -19,9 +19,6 @@ inline constexpr const char* kAmber = "#dd8a1d";
 inline constexpr const char* kTruth = "#9aa5b1";
 }  // namespace palette
 
-/// Colour of an error on a scale from 0 (blue, good) over green and amber to 1 (red); clamped. "#rrggbb".
-std::string error_colour(double fraction);
-
 /// A position on the drawing, px, y down.
 struct Point {
   double x = 0, y = 0;
@@ -110,8 +107,6 @@ class Chart {
 
   /// Line through the data, interrupted where x jumps by more than max_gap_x.
   void curve(const std::vector<double>& x, const std::vector<double>& y, const Stroke& stroke, double max_gap_x);
-  /// A horizontal line over the whole width, labelled at its right end outside the frame.
-  void level(double y, const std::string& label, const Stroke& stroke);
 
  private:
   Svg& svg_;
@@ -127,15 +122,5 @@ struct LegendEntry {
 
 /// One row of entries, left-aligned at `at`.
 void draw_legend(Svg& svg, Point at, const std::vector<LegendEntry>& entries);
-
-/// The values that a bar of error_colour shows.
-struct ErrorScale {
-  double max = 1;           ///< value of the last colour
-  std::string title;        ///< with unit
-  bool open_ended = false;  ///< the last colour also shows all values beyond `max`
-};
-
-/// Vertical bar of error_colour with labelled ticks on its right and the title above.
-void draw_error_scale(Svg& svg, const Area& area, const ErrorScale& scale);
 
 }  // namespace rtd::plot

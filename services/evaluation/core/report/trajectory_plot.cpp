@@ -13,14 +13,12 @@
 namespace rtd::eval {
 namespace {
 
-using plot::Anchor;
 using plot::Area;
 using plot::Chart;
 using plot::Point;
 namespace palette = plot::palette;
 
 constexpr std::size_t kMaxPathPoints = 4000;
-constexpr int kColourSteps = 32;
 constexpr std::array<const char*, 3> kAxisNames{"x [m]", "y [m]", "z [m]"};
 
 constexpr double kMaxGapS = 0.5;  // longer times without poses interrupt a line
@@ -107,86 +105,6 @@ void draw_path(plot::Svg& svg, const Chart& chart, const PathCurve& curve, Plane
   if (!run.empty()) svg.polyline(run, curve.stroke);
 }
 
-/// Neighbouring points of about the same error share one line element.
-void draw_coloured_path(plot::Svg& svg, const Chart& chart, const AteResult& ate, PlaneView plane, double max_m) {
-  const std::size_t stride = ate.points.size() / kMaxPathPoints + 1;
-  std::vector<Point> run;
-  int run_step = -1;
-  const auto finish = [&] {
-    if (run.size() > 1) svg.polyline(run, {plot::error_colour((run_step + 0.5) / kColourSteps), 2.6});
-    run.clear();
-  };
-  std::int64_t before_ns = 0;
-  for (std::size_t i = 0; i < ate.points.size(); i += stride) {
-    const AtePoint& point = ate.points[i];
-    const Point at = chart.at(point.estimate_m[plane.horizontal], point.estimate_m[plane.vertical]);
-    const int step = std::min(kColourSteps - 1, static_cast<int>(point.error_m / max_m * kColourSteps));
-    const bool gap = i > 0 && seconds(point.stamp_ns - before_ns) > kMaxGapS * static_cast<double>(stride);
-    if (gap) finish();
-    if (!run.empty() && step != run_step) {
-      run.push_back(at);
-      finish();
-    }
-    run.push_back(at);
-    run_step = step;
-    before_ns = point.stamp_ns;
-  }
-  finish();
-}
-
-void mark_ends(plot::Svg& svg, Point start, Point end) {
-  svg.circle(start, 5, "#ffffff", {palette::kInk, 2});
-  svg.text({start.x + 9, start.y - 7}, "start", {palette::kInk, 12, Anchor::kStart, true});
-  svg.rect({end.x - 4.5, end.y - 4.5, 9, 9}, palette::kInk, 1, 1.5);
-  svg.text({end.x + 9, end.y + 14}, "end", {palette::kInk, 12, Anchor::kStart, true});
-}
-
-/// A few extreme errors must not paint everything else blue: the scale then ends above the 95th percentile.
-double colour_scale_end_m(const AteResult& ate) {
-  const double p95_m = percentile(each(ate.points, [](const AtePoint& p) { return p.error_m; }), 0.95);
-  const double end_m = ate.error_m.max > 2.5 * p95_m ? 1.5 * p95_m : ate.error_m.max;
-  return std::isfinite(end_m) ? std::max(end_m, 1e-6) : 1e-6;
-}
-
-void draw_error_path(plot::Svg& svg, const Area& area, const AteResult& ate, const Trajectory& groundtruth) {
-  PathCurve truth = path_of(groundtruth);
-  truth.stroke = {palette::kTruth, 2.2};
-  std::vector<Eigen::Vector3d> all_m = truth.points_m;
-  for (const AtePoint& point : ate.points) all_m.push_back(point.estimate_m);
-  const PlaneView plane = widest_plane(all_m);
-
-  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 92, area.height - 30 - 46};
-  const Chart chart = path_chart(svg, frame, all_m, plane);
-  draw_path(svg, chart, truth, plane);
-  const double max_m = colour_scale_end_m(ate);
-  draw_coloured_path(svg, chart, ate, plane, max_m);
-  const auto end_point = [&](const AtePoint& p) {
-    return chart.at(p.estimate_m[plane.horizontal], p.estimate_m[plane.vertical]);
-  };
-  if (!ate.points.empty()) mark_ends(svg, end_point(ate.points.front()), end_point(ate.points.back()));
-
-  plot::draw_legend(svg, {frame.x, area.y + 14},
-                    {{"ground truth", palette::kTruth}, {"estimate, coloured by error", plot::error_colour(0.1)}});
-  const LengthUnit unit = length_unit(max_m);
-  plot::draw_error_scale(svg, {frame.x + frame.width + 24, frame.y + 24, 14, frame.height - 24},
-                         {max_m * unit.per_metre, fmt::format("error [{}]", unit.name), ate.error_m.max > max_m});
-}
-
-/// The position error over time, with a line at its RMSE.
-void draw_errors_over_time(plot::Svg& svg, const Area& area, const AteResult& ate) {
-  const LengthUnit unit = length_unit(ate.error_m.max);
-  const auto time_s = [&](const AtePoint& p) { return seconds(p.stamp_ns - ate.points.front().stamp_ns); };
-  const Area frame{area.x + 58, area.y + 30, area.width - 58 - 106, area.height - 30 - 46};
-  Chart chart(svg, frame, {0, std::max(time_s(ate.points.back()), 1e-3)},
-              {0, std::max(ate.error_m.max, 1e-6) * unit.per_metre * 1.06});
-  chart.draw_axes({"time since the first frame [s]", std::string("position error [") + unit.name + "]"});
-  chart.curve(each(ate.points, time_s), each(ate.points, [&](const AtePoint& p) { return p.error_m * unit.per_metre; }),
-              {palette::kBlue, 1.6}, kMaxGapS);
-  const double rmse = ate.error_m.rmse * unit.per_metre;
-  chart.level(rmse, fmt::format("RMSE {:.3g} {}", rmse, unit.name), {palette::kBlue, 1.2, "6 4"});
-  plot::draw_legend(svg, {frame.x, area.y + 14}, {{"position error", palette::kBlue}});
-}
-
 /// Colours of several estimates; when they come again, dashed.
 plot::Stroke stroke_of(std::size_t place) {
   constexpr std::array kColours{palette::kBlue, palette::kAmber, palette::kGreen, "#b03a5b", "#7a52a8", "#3aa6b8"};
@@ -225,21 +143,7 @@ Trajectory within(const Trajectory& trajectory, std::int64_t first_ns, std::int6
   return part;
 }
 
-std::string evaluation_svg(const AteResult& ate, const Trajectory& groundtruth, const std::string& title) {
-  plot::Svg svg(900, 960, title);
-  svg.text({20, 32}, title, {palette::kInk, 18, Anchor::kStart, true});
-  svg.text({20, 54},
-           fmt::format("ATE RMSE {}, median {}, max {}, {} pairs", length_text(ate.error_m.rmse),
-                       length_text(ate.error_m.median), length_text(ate.error_m.max), ate.error_m.count),
-           {palette::kMuted, 13});
-  if (ate.points.empty()) return svg.document();
-  const std::int64_t first_ns = ate.points.front().stamp_ns, last_ns = ate.points.back().stamp_ns;
-  draw_error_path(svg, {10, 76, 880, 590}, ate, within(groundtruth, first_ns, last_ns));
-  draw_errors_over_time(svg, {10, 680, 880, 270}, ate);
-  return svg.document();
-}
-
-std::string comparison_svg(const std::vector<NamedAte>& estimates, const Trajectory& groundtruth) {
+std::string evaluation_svg(const std::vector<NamedAte>& estimates, const Trajectory& groundtruth) {
   std::vector<PathCurve> curves{path_of(groundtruth)};
   curves.front().stroke = {palette::kTruth, 2.2};
   std::vector<Eigen::Vector3d> all_m = curves.front().points_m;
@@ -257,7 +161,7 @@ std::string comparison_svg(const std::vector<NamedAte>& estimates, const Traject
     curves.push_back(std::move(curve));
   }
   const double top = 20 + 18 * static_cast<double>(legend.size());
-  plot::Svg svg(900, top + 890, "Several trajectories");
+  plot::Svg svg(900, top + 890, "Trajectories and their errors");
   for (std::size_t i = 0; i < legend.size(); ++i)
     plot::draw_legend(svg, {20, 24 + 18 * static_cast<double>(i)}, {legend[i]});
   const PlaneView plane = widest_plane(all_m);
