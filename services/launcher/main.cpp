@@ -53,7 +53,7 @@ constexpr std::array kToolCommands = {
     ExternalCommand{"benchmark", "rtd-eval", "Run all modes on TUM, Bonn or OpenLORIS data"},
     ExternalCommand{"report", "rtd-eval", "Write the report of a run again, from its run.json"},
     ExternalCommand{"info", "rtd-recording", "Show what a recording contains: topics, rates, losses, damage"},
-    ExternalCommand{"diff", "rtd-recording", "Compare two recordings or two trajectories (TUM format)"},
+    ExternalCommand{"diff", "rtd-recording", "Compare two recordings"},
     ExternalCommand{"convert", "rtd-recording",
                     "Convert a recording with all its topics to MCAP, or frames to TUM or MCAP"},
     ExternalCommand{"map", "rtd-map", "Show what a map file contains; export its landmarks or keyframe poses"},

@@ -9,7 +9,6 @@
 #include <ostream>
 #include <utility>
 
-#include "common/geometry/pose_list.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
 #include "common/recordings/reader.hpp"
@@ -43,11 +42,6 @@ void warn(const Contents& contents, const std::string& path, std::ostream& err) 
         << problems_text(contents.problems, contents.problems.size(), kMaxProblems);
 }
 
-template <class Diff>
-void print(const Diff& diff, bool json, std::ostream& out) {
-  out << (json ? service::json_text(to_json(diff)) + '\n' : to_text(diff));
-}
-
 int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream& err) {
   const Opened a = open_showing(request.a, err), b = open_showing(request.b, err);
   const Contents in_a = read(a, request.a, err), in_b = read(b, request.b, err);
@@ -57,33 +51,18 @@ int diff_recordings(const DiffRequest& request, std::ostream& out, std::ostream&
   explain(difference, *a.source, *b.source);
   warn(in_a, request.a, err);
   warn(in_b, request.b, err);
-  print(difference, request.json, out);
+  out << (request.json ? service::json_text(to_json(difference)) + '\n' : to_text(difference));
   if (!difference.equal()) return service::kRunFailed;
   return in_a.data_lost || in_b.data_lost ? service::kPartialLoss : service::kOk;
 }
 
 constexpr char kCompared[] =
-    "'rtd diff' compares two recordings (MCAP, rosbag2, ROS 1 bag), or two trajectories in TUM format";
+    "'rtd diff' compares two recordings (MCAP, rosbag2, ROS 1 bag); two trajectories: cmp, or 'rtd eval A B'";
 
-geometry::Trajectory read_trajectory(const std::string& path) {
-  try {
-    geometry::PoseList list = geometry::read_pose_list(std::filesystem::path(path));
-    if (!list.damages.empty()) throw geometry::TrajectoryError(list.damages.front());
-    return std::move(list.poses);
-  } catch (const geometry::TrajectoryError& error) {
-    throw geometry::TrajectoryError(std::string(error.what()) + "; " + kCompared);
-  }
-}
-
-int diff_trajectories(const DiffRequest& request, std::ostream& out) {
-  const TrajectoryDiff difference = diff(read_trajectory(request.a), read_trajectory(request.b), request.tolerance);
-  print(difference, request.json, out);
-  return difference.equal() ? service::kOk : service::kRunFailed;
-}
-
-void refuse_other_format(const std::string& path) {
-  if (const std::string other = mcap::other_format(path); !other.empty())
-    throw mcap::RecordingFileError(path + " is " + other + "; " + kCompared);
+void require_recording(const std::string& path) {
+  if (is_recording(path)) return;
+  const std::string other = mcap::other_format(path);
+  throw mcap::RecordingFileError(path + " is " + (other.empty() ? "not a recording" : other) + "; " + kCompared);
 }
 
 void add_damages(RecordingReport& report, const std::vector<std::string>& damages) {
@@ -133,46 +112,25 @@ void add_channel(RecordingReport& report, const std::string& topic, const std::s
 }  // namespace
 
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
-  CLI::App* command = parent.add_subcommand(
-      "diff", "Compare two recordings (MCAP, rosbag2, ROS 1 bag) or two trajectories (TUM format)");
-  command->add_option("a", request.a, "Recording or trajectory")->required();
-  command->add_option("b", request.b, "Another of the same kind")->required();
+  CLI::App* command = parent.add_subcommand("diff", "Compare two recordings (MCAP, rosbag2, ROS 1 bag)");
+  command->add_option("a", request.a, "Recording, or a folder with one")->required();
+  command->add_option("b", request.b, "Another")->required();
   command->add_flag("--json", request.json, "Print JSON instead of text");
   command
       ->add_option("--ignore", request.ignore,
-                   "Recordings: stamps (publish times), run (fields that depend on the process and time of a run: "
+                   "stamps (publish times), run (fields that depend on the process and time of a run: "
                    "published_ns, finished_ns, stage_ms, source_id)")
       ->delimiter(',')
       ->check(CLI::IsMember({"stamps", "run"}));
-  command
-      ->add_option("--stamp-tolerance", request.tolerance.stamp_s,
-                   "Trajectories: largest stamp difference of a pair [s]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--tolerance-m", request.tolerance.translation_m,
-                   "Trajectories: largest difference that counts as equal [m]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command
-      ->add_option("--tolerance-deg", request.tolerance.rotation_deg,
-                   "Trajectories: largest difference that counts as equal [deg]")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
   command->footer(
       "Exit code: 0 equal, 1 different, 2 a file cannot be used, 3 equal in the readable part of damaged files");
   return command;
 }
 
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err) {
-  return service::report_errors<mcap::RecordingFileError, geometry::TrajectoryError>("rtd diff", err, [&] {
-    const bool a = is_recording(request.a), b = is_recording(request.b);
-    if (!a) refuse_other_format(request.a);
-    if (!b) refuse_other_format(request.b);
-    if (a != b)
-      throw mcap::RecordingFileError((a ? request.a : request.b) + " is a recording, " + (a ? request.b : request.a) +
-                                     " is not: compare two files of the same kind");
-    return a ? diff_recordings(request, out, err) : diff_trajectories(request, out);
+  return service::report_errors<mcap::RecordingFileError>("rtd diff", err, [&] {
+    for (const std::string& path : {request.a, request.b}) require_recording(path);
+    return diff_recordings(request, out, err);
   });
 }
 

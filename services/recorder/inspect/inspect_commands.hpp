@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "services/recorder/inspect/recording_report.hpp"
-#include "services/recorder/inspect/trajectory_diff.hpp"
 
 namespace CLI {
 class App;
@@ -21,15 +20,14 @@ namespace rtd::recordings {
 struct DiffRequest {
   std::string a, b;
   bool json = false;
-  PoseTolerance tolerance;
-  std::vector<std::string> ignore;  ///< recordings: "stamps", "run"
+  std::vector<std::string> ignore;  ///< "stamps", "run"
 };
 
 /// Adds the subcommand `diff`; parsing fills `request`, which must outlive `parent`.
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request);
 
-/// Compares two recordings or two trajectories. Returns the exit code: 0 equal; 1 different; 2 when a file cannot be
-/// used; 3 when a recording is damaged and the readable part is equal.
+/// Returns the exit code: 0 equal; 1 different; 2 when a file cannot be used; 3 when a recording is damaged and the
+/// readable part is equal.
 int run_diff(const DiffRequest& request, std::ostream& out, std::ostream& err);
 
 /// The command line of `rtd info`.

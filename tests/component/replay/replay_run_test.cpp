@@ -44,8 +44,7 @@ TEST_F(ReplayRunTest, replaying_a_lockstep_run_gives_its_trajectory_byte_for_byt
   EXPECT_EQ(launcher::text_of(scratch_ / "features/trajectory.txt"), trajectory) << "camera and filter: the recording";
   EXPECT_FALSE(std::filesystem::exists(scratch_ / "features/logs/filter.log"));
 
-  RtdCommand diff, missing;
-  EXPECT_EQ(diff.run({"diff", scratch_ / "original/trajectory.txt", scratch_ / "features/trajectory.txt"}), 0);
+  RtdCommand missing;
   EXPECT_EQ(missing.run(run("mcap:" + file_, scratch_ / "boxes", {"--replay-topics", "detections"})), 2);
   EXPECT_THAT(missing.output(), AllOf(HasSubstr("rt/detector/detections"), HasSubstr("rtd/features")));
 }
