@@ -244,7 +244,7 @@ void add_run_command(CLI::App& app, RunOptions& options) {
 
 void add_demo_command(CLI::App& app, DemoOptions& options) {
   CLI::App* command = app.add_subcommand("demo", "Run the same scene without and with removal of dynamic points");
-  command->add_option("--dataset", options.dataset, "TUM RGB-D sequence to download, e.g. fr3_walking_xyz");
+  command->add_option("--source", options.source, "Of frames, e.g. tum:FOLDER; default: a synthetic room with people");
   command->add_option("--out", options.out_dir, "Folder for both runs and demo.html")->capture_default_str();
   command->add_option("--frames", options.frames, "End after this many frames");
   service::add_bus_options(*command, options.config);

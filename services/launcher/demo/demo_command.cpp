@@ -7,9 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <regex>
 #include <sstream>
-#include <stdexcept>
 #include <vector>
 
 #include "common/io/atomic_file.hpp"
@@ -27,42 +25,17 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr char kSyntheticSource[] = "synthetic:office?frames=300&figures=drawn";
-constexpr char kPublicUrl[] = "https://cvg.cit.tum.de/rgbd/dataset";
+/// With people.
+constexpr char kPublicSequence[] = "rgbd_dataset_freiburg3_walking_xyz";
+constexpr char kPublicUrl[] = "https://cvg.cit.tum.de/rgbd/dataset/freiburg3/";
 
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
 }
 
-fs::path cache_folder() {
-  const std::string cache = environment("XDG_CACHE_HOME"), home = environment("HOME");
-  if (!cache.empty()) return fs::path(cache) / "rtd-slam" / "datasets";
-  if (!home.empty()) return fs::path(home) / ".cache" / "rtd-slam" / "datasets";
-  throw std::runtime_error("no folder for the data set: set HOME or XDG_CACHE_HOME");
-}
-
-void run_tool(const std::string& tool, const std::vector<std::string>& arguments, const std::string& failure) {
-  const std::string executable = process::find_executable(tool);
-  if (executable.empty()) throw std::runtime_error(tool + " is not installed: apt-get install " + tool);
-  if (process::run_in_foreground(executable, arguments) != 0) throw std::runtime_error(failure);
-}
-
-void unpack(const fs::path& archive, const fs::path& folder, const std::string& name) {
-  const fs::path unpacking = folder / ".unpacking";
-  fs::remove_all(unpacking);
-  fs::create_directories(unpacking);
-  run_tool("tar", {"-xzf", archive.string(), "-C", unpacking.string()},
-           archive.string() + " is not a complete archive: try again");
-  if (!fs::is_directory(unpacking / name)) {
-    throw std::runtime_error(archive.string() + " has no folder " + name + ": is RTD_TUM_URL right?");
-  }
-  fs::rename(unpacking / name, folder / name);
-  fs::remove_all(unpacking);
-  fs::remove(archive);
-}
-
 std::string choose_source(const DemoOptions& options) {
-  if (!options.dataset.empty()) return "tum:" + fetch_tum_dataset(options.dataset);
+  if (!options.source.empty()) return options.source;
   const std::string data = demo_data_folder();
   return data.empty() ? kSyntheticSource : "tum:" + (fs::path(data) / kDemoSequence).string();
 }
@@ -104,7 +77,8 @@ void print_next_steps(const std::string& out_dir, const std::string& page, const
   std::cout << "\n  detector weights: " << detector << "\n\n  next:\n"
             << "    " << rtd << " run --source 'synthetic:office?frames=0' --out /tmp/office    endless: Ctrl-C\n"
             << "    " << rtd << " eval " << run << "/trajectory.txt " << run << "/groundtruth.txt\n"
-            << "    " << rtd << " demo --dataset fr3_walking_xyz    a real sequence with people (download)\n"
+            << "    curl " << kPublicUrl << kPublicSequence << ".tgz | tar xz    a real sequence with people\n"
+            << "    " << rtd << " demo --source tum:" << kPublicSequence << '\n'
             << "    " << rtd << " run --help    your own data: folders, bags, recordings, cameras\n"
             << "\n  both trajectories: " << fs::absolute(page).lexically_normal().string() << std::endl;
 }
@@ -133,33 +107,6 @@ int demo(const DemoOptions& options) {
     const process::FolderLock folder = process::take_out_folder(options.out_dir);
     return run_both(options, choose_source(options));
   });
-}
-
-TumDataset tum_dataset(const std::string& name, const std::string& base_url) {
-  static const std::regex kName("(?:rgbd_dataset_)?fr(?:eiburg)?([123])_([a-z0-9_]+)");
-  std::smatch parts;
-  if (!std::regex_match(name, parts, kName)) {
-    throw service::ConfigError("--dataset " + name + ": not a TUM RGB-D sequence, use a name such as fr3_walking_xyz");
-  }
-  const std::string family = "freiburg" + parts[1].str();
-  const std::string folder = "rgbd_dataset_" + family + "_" + parts[2].str();
-  return {base_url + "/" + family + "/" + folder + ".tgz", folder};
-}
-
-std::string fetch_tum_dataset(const std::string& name) {
-  const std::string mirror = environment("RTD_TUM_URL");
-  const TumDataset dataset = tum_dataset(name, mirror.empty() ? kPublicUrl : mirror);
-  const fs::path cache = cache_folder(), folder = cache / dataset.folder, archive = folder.string() + ".tgz.part";
-  if (fs::is_directory(folder)) return folder.string();
-
-  fs::create_directories(cache);
-  std::cerr << "rtd: downloading " << dataset.url << " (several hundred MB) into " << cache.string() << '\n';
-  run_tool(
-      "curl", {"--fail", "--location", "--show-error", "--progress-bar", "--output", archive.string(), dataset.url},
-      "cannot download " + dataset.url + ": without a network use 'rtd demo' (no download), or unpack the sequence " +
-          "yourself and 'rtd run --source tum:FOLDER'; set RTD_TUM_URL to use a mirror");
-  unpack(archive, cache, dataset.folder);
-  return folder.string();
 }
 
 }  // namespace rtd::launcher

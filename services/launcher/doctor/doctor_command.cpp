@@ -157,7 +157,7 @@ void check_data(Findings& findings) {
   findings.push_back({Verdict::kOk, !folder.empty()
                                         ? "data: " + folder
                                         : "data: RTD_DATA_DIR has no folder walk_xyz, so 'rtd demo' uses the synthetic "
-                                          "room; 'rtd demo --dataset fr3_walking_xyz' downloads a real sequence"});
+                                          "room; 'rtd demo --source tum:FOLDER' a real sequence"});
 }
 
 /// Those of this host, and those that announce themselves in the domain where that can be read.

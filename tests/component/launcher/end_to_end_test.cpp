@@ -348,6 +348,11 @@ TEST_F(EndToEndTest, the_demo_needs_no_data_and_shows_both_runs_on_one_page) {
   EXPECT_THAT(text_of(out_ + "/demo.html"), AllOf(HasSubstr("off/report.html"), HasSubstr("rtd/map.html")));
 }
 
+TEST_F(EndToEndTest, the_demo_takes_a_source_and_refuses_one_that_is_not_there) {
+  EXPECT_EQ(rtd_.run({"demo", "--source", "tum:holiday_video", "--out", out_, "--domain", "67"}), 2);
+  EXPECT_THAT(rtd_.output(), HasSubstr("holiday_video"));
+}
+
 TEST_F(EndToEndTest, an_ablation_compares_variants_keeps_its_runs_and_refuses_unknown_techniques) {
   std::vector<std::string> ablate = {"ablate",  "--source",     "synthetic:office?frames=8",
                                      "--modes", "off,geometry", "--without",

@@ -206,10 +206,5 @@ TEST_F(FrontTest, the_doctor_names_every_missing_service_and_fails) {
                                    HasSubstr("bus: "), HasSubstr("weights: "), HasSubstr("data: ")));
 }
 
-TEST_F(FrontTest, a_demo_of_an_unknown_sequence_is_refused) {
-  EXPECT_EQ(rtd_.run({"demo", "--dataset", "holiday_video"}), 2);
-  EXPECT_THAT(rtd_.output(), HasSubstr("fr3_walking_xyz"));
-}
-
 }  // namespace
 }  // namespace rtd::launcher
