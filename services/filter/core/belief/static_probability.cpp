@@ -52,6 +52,16 @@ CellBeliefs SurfaceBeliefs::recall(const DepthGrid& grid, const std::vector<Eige
 
 namespace {
 
+constexpr double kMinMovingCells = 0.2;        ///< share of its cells dynamic: the object moves
+constexpr int kMinMovingVotes = 8;             ///< or this many of its features displaced
+constexpr double kMinMovingVotesShare = 0.35;  ///< ... and this share of them
+constexpr double kMaxDynamicCells = 0.05;      ///< share of its cells dynamic: less, it may rest
+constexpr double kMinLastingCells = 0.3;       ///< ... this share there 0.4 s ago
+constexpr int kMinRestingVotes = 12;           ///< ... this many features at their place
+constexpr double kMinRestingRatio = 5.0;       ///< ... this many times more than displaced ones
+constexpr double kGainPerS = 10.0;             ///< log-odds for each second at rest
+constexpr double kBeliefForgetS = 2.0;  ///< time constant with which a belief returns to the prior without a statement
+
 /// Variance of the median of normal values, by their median absolute deviation.
 float median_variance(const std::vector<float>& values, float middle) {
   constexpr float kSigmaPerMad = 1.4826F, kMedianVariance = 1.5708F;  // pi / 2 times that of the mean
@@ -73,13 +83,12 @@ ObjectMotion judge(const SceneObject& object, const MotionEvidence& evidence, co
     moving += votes.moving[cell];
   }
   const auto cells = static_cast<double>(object.cells.size());
-  if (dynamic >= config.min_moving_cells * cells) return ObjectMotion::kMoving;
-  if (moving >= config.min_moving_votes && moving >= config.min_moving_votes_share * (moving + resting))
-    return ObjectMotion::kMoving;
+  if (dynamic >= kMinMovingCells * cells) return ObjectMotion::kMoving;
+  if (moving >= kMinMovingVotes && moving >= kMinMovingVotesShare * (moving + resting)) return ObjectMotion::kMoving;
   if (object.level == MotionLevel::kHigh && drifts(drift_of(object.cells, evidence.votes, votes.moving.size()), config))
     return ObjectMotion::kMoving;
-  const bool features_rest = resting >= config.min_resting_votes && resting >= config.min_resting_ratio * moving;
-  if (dynamic <= config.max_dynamic_cells * cells && lasting >= config.min_lasting_cells * cells && features_rest)
+  const bool features_rest = resting >= kMinRestingVotes && resting >= kMinRestingRatio * moving;
+  if (dynamic <= kMaxDynamicCells * cells && lasting >= kMinLastingCells * cells && features_rest)
     return ObjectMotion::kResting;
   return ObjectMotion::kUnknown;
 }
@@ -99,12 +108,12 @@ class BeliefStep {
     constexpr double kLongestStepS = 0.2;  // a pause of the camera is no evidence
     const double step_s = std::clamp(input.elapsed_s, 0.0, kLongestStepS);
     const auto highest = log_odds(config.highest_probability);
-    const auto gain = static_cast<float>(config.gain_per_s * step_s),
+    const auto gain = static_cast<float>(kGainPerS * step_s),
                high_gain = static_cast<float>(config.high_gain_per_s * step_s);
     background_ = {log_odds(config.background_prior), gain, highest};
     medium_ = {log_odds(config.medium_prior), gain, highest};
     high_ = {log_odds(config.high_prior), high_gain, log_odds(config.high_limit)};
-    forgotten_ = static_cast<float>(1 - std::exp(-step_s / config.forget_s));
+    forgotten_ = static_cast<float>(1 - std::exp(-step_s / kBeliefForgetS));
     if (!techniques.belief) background_.gain = medium_.gain = highest - lowest_;  // one frame decides
     if (!techniques.belief || !techniques.resting_objects) high_.gain = 0;
   }
@@ -221,7 +230,8 @@ CellBeliefs grow_doubt(const FrameKnowledge& known, int cells, const CellMask& a
 
 /// Keeps the most probable of the removed features until enough remain.
 void keep_best_of_doubtful(std::vector<msg::Feature>& features, const FilterConfig& config) {
-  const auto seen_moving = static_cast<float>(config.belief.lowest_probability) * 1.01F;
+  constexpr float kRounding = 1.01F;  // of beliefs, which are log-odds
+  const auto seen_moving = static_cast<float>(config.belief.lowest_probability) * kRounding;
   int kept = 0;
   std::vector<msg::Feature*> doubtful;
   for (msg::Feature& feature : features) {
@@ -265,7 +275,7 @@ ObjectDrift drift_of(const std::vector<int>& cells, const FeatureVotes& votes, s
 }
 
 bool drifts(const ObjectDrift& drift, const BeliefConfig& config) {
-  return drift.features >= config.min_resting_votes &&
+  return drift.features >= kMinRestingVotes &&
          drift.shift_px > config.drift_sigmas * std::hypot(static_cast<double>(drift.sigma_px), config.drift_floor_px);
 }
 

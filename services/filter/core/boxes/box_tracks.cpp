@@ -12,6 +12,11 @@
 namespace rtd::filter {
 namespace {
 
+/// Intersection over union of a track and a detection; less: not the same object.
+constexpr double kMinBoxOverlap = 0.15;
+constexpr double kMaxMatchCost = 1.0;  ///< 1 - overlap, plus another class and another depth; more: not the same object
+constexpr int kConfirmBoxHits = 2;     ///< a track seen less often ends with the first miss
+
 constexpr std::int64_t kSameFrameNs = 60'000'000;  // a batch for a dropped frame counts for the nearest one
 constexpr double kVoteDecay = 0.9;                 // per hit: the class of a track can change
 
@@ -74,7 +79,7 @@ void BoxTracks::update(const DetectionBatch& batch, const DepthOfBox& depth_of) 
           match_cost(*track, track->steps[step], batch.detections[column], depths[column]);
     }
   }
-  const std::vector<int> column_of = assign(costs, config_.max_match_cost);
+  const std::vector<int> column_of = assign(costs, kMaxMatchCost);
   std::vector<char> taken(batch.detections.size(), 0);
   for (std::size_t row = 0; row < then.size(); ++row) {
     const auto& [track, step] = then[row];
@@ -100,7 +105,7 @@ double BoxTracks::match_cost(const Track& track, const Step& step, const vision:
                              double depth_m) const {
   constexpr double kAnotherClass = 0.2, kDepthWeight = 0.3, kFarDepthM = 1.0;
   const double overlap = intersection_over_union(step.state.box(), box_of(detection));
-  if (overlap < config_.min_overlap) return std::numeric_limits<double>::infinity();
+  if (overlap < kMinBoxOverlap) return std::numeric_limits<double>::infinity();
   double cost = 1 - overlap;
   if (detection.class_name != voted_class(track.votes)) cost += kAnotherClass;
   if (depth_m > 0 && step.depth_m > 0) {
@@ -142,7 +147,7 @@ void BoxTracks::miss(Track& track, std::size_t step, const TrackedFrame& frame) 
   const double unseen_s = msg::minus_s(frame.stamp_ns, track.last_hit_ns);
   const double known_s = msg::minus_s(track.last_hit_ns, track.first_ns);
   const double survive_s = std::min(config_.survive_misses_s, known_s);
-  track.dead = track.hits < config_.confirm_hits || (track.misses >= 2 && unseen_s > survive_s);
+  track.dead = track.hits < kConfirmBoxHits || (track.misses >= 2 && unseen_s > survive_s);
 }
 
 void BoxTracks::start_track(const DetectionBatch& batch, std::size_t detection, std::size_t frame, double depth_m) {
@@ -154,8 +159,7 @@ void BoxTracks::start_track(const DetectionBatch& batch, std::size_t detection, 
   track.score = d.score;
   track.first_ns = track.last_hit_ns = frames_[frame].stamp_ns;
   for (std::size_t i = frame; i < frames_.size(); ++i) {
-    track.steps.push_back(
-        {frames_[i].stamp_ns, BoxKalman(box_of(d), config_.noise), std::nullopt, i == frame, std::nullopt, depth_m});
+    track.steps.push_back({frames_[i].stamp_ns, BoxKalman(box_of(d)), std::nullopt, i == frame, std::nullopt, depth_m});
   }
   track.steps.front().seen = d;
   replay(track, 1);

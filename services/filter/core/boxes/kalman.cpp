@@ -7,6 +7,12 @@
 namespace rtd::filter {
 namespace {
 
+// Noise in units of the box's own size, so that near and far objects are treated alike.
+constexpr double kDetection = 0.05;     ///< standard deviation of a detected edge
+constexpr double kAcceleration = 4.0;   ///< of an object, box sizes / s^2
+constexpr double kFlow = 0.01;          ///< of a shift by optical flow from image to image
+constexpr double kFirstVelocity = 1.5;  ///< of a box seen once, box sizes / s
+
 constexpr double kMinUnitPx = 8;  // boxes smaller than this are measured no better
 
 std::array<double, 4> numbers_of(const Box& box) {
@@ -34,11 +40,11 @@ double intersection_over_union(const Box& a, const Box& b) {
   return joint > 0 ? shared / joint : 0.0;
 }
 
-BoxKalman::BoxKalman(const Box& first, const BoxNoise& noise) : noise_(noise) {
+BoxKalman::BoxKalman(const Box& first) {
   const std::array<double, 4> numbers = numbers_of(first);
   for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].state[0] = numbers[i];
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    const double position = noise.detection * unit_px(i), velocity = noise.first_velocity * unit_px(i);
+    const double position = kDetection * unit_px(i), velocity = kFirstVelocity * unit_px(i);
     axes_[i].covariance = Eigen::Vector2d(position * position, velocity * velocity).asDiagonal();
   }
 }
@@ -49,14 +55,14 @@ double BoxKalman::unit_px(std::size_t axis) const {
 
 void BoxKalman::predict(double dt_s) {
   if (dt_s <= 0) return;
-  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].predict(dt_s, noise_.acceleration * unit_px(i));
+  for (std::size_t i = 0; i < axes_.size(); ++i) axes_[i].predict(dt_s, kAcceleration * unit_px(i));
   for (std::size_t i : {2, 3}) axes_[i].state[0] = std::max(1.0, axes_[i].state[0]);
 }
 
 void BoxKalman::detected(const Box& measured) {
   const std::array<double, 4> numbers = numbers_of(measured);
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].update({1, 0}, numbers[i], noise_.detection * unit_px(i));
+    axes_[i].update({1, 0}, numbers[i], kDetection * unit_px(i));
   }
 }
 
@@ -66,7 +72,7 @@ void BoxKalman::flowed(const BoxFlow& flow, double dt_s) {
   const std::array<double, 4> shift{flow.shift_px.x(), flow.shift_px.y(), (flow.scale - 1) * now.size_px.x(),
                                     (flow.scale - 1) * now.size_px.y()};
   for (std::size_t i = 0; i < axes_.size(); ++i) {
-    axes_[i].update({0, 1}, shift[i] / dt_s, noise_.flow * unit_px(i) / dt_s);
+    axes_[i].update({0, 1}, shift[i] / dt_s, kFlow * unit_px(i) / dt_s);
   }
 }
 

@@ -91,7 +91,7 @@ struct BoxFlow {
 /// (docs/theory/dynamic_points.md Eq. (9)-(11)). Measured by detections (position) and by optical flow (velocity).
 class BoxKalman {
  public:
-  BoxKalman(const Box& first, const BoxNoise& noise);
+  explicit BoxKalman(const Box& first);
 
   void predict(double dt_s);
   void detected(const Box& measured);
@@ -106,7 +106,6 @@ class BoxKalman {
   /// The size that noise on this axis is measured in.
   double unit_px(std::size_t axis) const;
 
-  BoxNoise noise_;
   std::array<AxisKalman, 4> axes_;  ///< centre x, y, width, height; px, px/s
 };
 

@@ -12,6 +12,13 @@
 namespace rtd::filter {
 namespace {
 
+constexpr int kConfirmHits = 3;           ///< a surface seen moving less often is not yet a mover
+constexpr double kConfirmS = 0.13;        ///< ... nor is one first seen moving less long ago
+constexpr double kAccelerationMS2 = 0.5;  ///< of a mover without a class
+/// Unseen for this long, it is masked where its track expects it; before that memory does so.
+constexpr double kExpectAfterS = 1.0;
+constexpr double kMaxUnseenWayM = 0.5;  ///< farther than this unseen, it may be anywhere
+
 constexpr std::size_t kMinCells = 40, kEnoughCells = 300;  // every n-th cell of a large surface is enough
 
 Eigen::Vector3d point_world(const MoverFrame& frame, int cell) {
@@ -128,14 +135,14 @@ double MoverTracks::margin_m(const Track& track) const {
 }
 
 bool MoverTracks::confirmed(const Track& track) const {
-  return track.hits >= config_.confirm_hits && msg::minus_s(track.seen_ns, track.first_ns) >= config_.confirm_s;
+  return track.hits >= kConfirmHits && msg::minus_s(track.seen_ns, track.first_ns) >= kConfirmS;
 }
 
 CellMask MoverTracks::expected(const MoverFrame& frame) const {
   CellMask mask(static_cast<std::size_t>(frame.grid.shape.size()), 0);
   for (Track track : tracks_) {
     predict(track, frame.pose.stamp_ns);
-    if (!confirmed(track) || !track.out_of_sight || track.unseen_s() < config_.expect_after_s) continue;
+    if (!confirmed(track) || !track.out_of_sight || track.unseen_s() < kExpectAfterS) continue;
     for (const int cell : look_into(track.extent(margin_m(track)), frame).cells)
       mask[static_cast<std::size_t>(cell)] = 1;
   }
@@ -166,7 +173,7 @@ void MoverTracks::update(const MoverFrame& frame, const DepthClusters& clusters,
 void MoverTracks::predict(Track& track, std::int64_t stamp_ns) const {
   const double dt_s = msg::minus_s(stamp_ns, track.now_ns);
   if (dt_s <= 0) return;
-  for (AxisKalman& axis : track.axes) axis.predict(dt_s, config_.acceleration_m_s2);
+  for (AxisKalman& axis : track.axes) axis.predict(dt_s, kAccelerationMS2);
   track.now_ns = stamp_ns;
 }
 
@@ -240,7 +247,7 @@ void MoverTracks::miss(Track& track, double elapsed_s, const MoverFrame& frame, 
 bool MoverTracks::ended(const Track& track) const {
   constexpr double kUnconfirmedS = 0.3;
   return track.rest_s > config_.rest_s || track.gone_s > config_.gone_s || track.unseen_s() > config_.max_unseen_s ||
-         track.unseen_s() * track.velocity().norm() > config_.max_unseen_way_m ||
+         track.unseen_s() * track.velocity().norm() > kMaxUnseenWayM ||
          (!confirmed(track) && track.unseen_s() > kUnconfirmedS);
 }
 

@@ -14,6 +14,8 @@
 namespace rtd::filter {
 namespace {
 
+constexpr double kUnwatchedS = 0.5;  ///< without a detector for this long: geometry only
+
 constexpr float kReduction = 2;  // half resolution: a quarter of the time, and movers do not need sub-pixels
 constexpr int kMaxLevel = 2;     // with the window: finds shifts of some 60 px of the full image
 const cv::Size kWindow{11, 11};
@@ -121,7 +123,9 @@ std::optional<PointsMotion> MaskFlow::follow(std::int64_t from_ns, std::int64_t 
     return std::nullopt;
   const auto& before = pyramid_of(from->grey, from->pyramid);
   const auto& after = pyramid_of(to->grey, to->pyramid);
-  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.05);
+  constexpr int kMaxRounds = 10;
+  constexpr double kLastStepPx = 0.05;  // of the reduced image: less than the flow's own error
+  const cv::TermCriteria enough(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMaxRounds, kLastStepPx);
   std::vector<cv::Point2f> start, there, back;
   for (const cv::Point2f& p : points_px) start.push_back(p / kReduction);
   std::vector<std::uint8_t> found, returned;
@@ -143,8 +147,7 @@ std::optional<PointsMotion> MaskFlow::follow(std::int64_t from_ns, std::int64_t 
 }
 
 ObjectTracker::ObjectTracker(const FilterConfig& config)
-    : config_(config.tracks),
-      masks_(config.masks),
+    : masks_(config.masks),
       use_tracks_(config.techniques.box_tracks),
       use_flow_(config.techniques.mask_flow),
       levels_(config.techniques.motion_levels ? MotionLevels(config.motion_levels)
@@ -184,7 +187,7 @@ std::vector<ObjectBox> ObjectTracker::boxes_of_frame(const DetectorUpdate& detec
 std::vector<ObjectBox> ObjectTracker::tracked_boxes(const DetectorUpdate& detector, const vision::RgbdImage& image,
                                                     const DepthGrid& grid, const ViewStore& views) {
   if (detector.active) detector_active_ns_ = image.stamp_ns;
-  if (static_cast<double>(msg::apart_ns(image.stamp_ns, detector_active_ns_)) > 1e9 * config_.unwatched_s) {
+  if (static_cast<double>(msg::apart_ns(image.stamp_ns, detector_active_ns_)) > 1e9 * kUnwatchedS) {
     clear();  // geometry only
     return {};
   }

@@ -76,7 +76,6 @@ class ObjectTracker {
                                     const ViewStore& views);
   void learn_depths(const std::vector<SceneObject>& objects, const DepthGrid& grid);
 
-  BoxTrackConfig config_;
   MaskConfig masks_;
   bool use_tracks_, use_flow_;
   MotionLevels levels_;

@@ -12,65 +12,27 @@
 /// (common/service/config.hpp). The defaults are the tested values.
 namespace rtd::filter {
 
-/// Noise in units of the box's own size, so that near and far objects are treated alike.
-struct BoxNoise {
-  double detection = 0.05;
-  double acceleration = 4.0;
-  double flow = 0.01;
-  double first_velocity = 1.5;
-
-  void bind(auto& binder) {
-    binder.field("detection_noise", detection, {0.001, 1.0}, "standard deviation of a detected edge, box sizes");
-    binder.field("acceleration", acceleration, {0.01, 100.0}, "of an object, box sizes / s^2");
-    binder.field("flow_noise", flow, {0.0001, 1.0}, "of a shift by optical flow from image to image, box sizes");
-    binder.field("first_velocity", first_velocity, {0.01, 100.0}, "of a box seen once, box sizes / s");
-  }
-};
-
 /// The life of box tracks; docs/theory/dynamic_points.md section 6.
 struct BoxTrackConfig {
-  BoxNoise noise;
-  double min_overlap = 0.15;
-  double max_match_cost = 1.0;
-  int confirm_hits = 2;
   double survive_misses_s = 0.5;
   double silence_s = 1.5;
-  double unwatched_s = 0.5;
 
   void bind(auto& binder) {
-    noise.bind(binder);
-    binder.field("min_overlap", min_overlap, {0.0, 1.0},
-                 "intersection over union of a track and a detection; less: not the same object");
-    binder.field("max_match_cost", max_match_cost, {0.1, 2.0},
-                 "1 - overlap, plus another class and another depth; more: not the same object");
-    binder.field("confirm_hits", confirm_hits, {1, 100}, "a track seen less often ends with the first miss");
     binder.field("survive_misses_s", survive_misses_s, {0.0, 60.0}, "how long a confirmed track survives misses");
     binder.field("silence_s", silence_s, {0.0, 60.0}, "how long a track is carried without any detections");
-    binder.field("unwatched_s", unwatched_s, {0.0, 60.0}, "without a detector for this long: geometry only");
   }
 };
 
 /// The life of tracks of movers without a class; docs/theory/dynamic_points.md section 4.
 struct MoverTrackConfig {
-  int confirm_hits = 3;
-  double confirm_s = 0.13;
-  double acceleration_m_s2 = 0.5;
-  double expect_after_s = 1.0;
   double rest_s = 1.5;
   double gone_s = 0.5;
   double max_unseen_s = 5.0;
-  double max_unseen_way_m = 0.5;
 
   void bind(auto& binder) {
-    binder.field("confirm_hits", confirm_hits, {1, 100}, "a surface seen moving less often is not yet a mover");
-    binder.field("confirm_s", confirm_s, {0.0, 10.0}, "... nor is one first seen moving less long ago");
-    binder.field("acceleration_m_s2", acceleration_m_s2, {0.01, 100.0}, "of a mover without a class");
-    binder.field("expect_after_s", expect_after_s, {0.0, 60.0},
-                 "unseen for this long, it is masked where its track expects it; before that memory does so");
     binder.field("rest_s", rest_s, {0.0, 60.0}, "seen at rest for this long, it has become part of the world");
     binder.field("gone_s", gone_s, {0.0, 60.0}, "its place seen without it for this long, it has gone");
     binder.field("max_unseen_s", max_unseen_s, {0.0, 60.0}, "not seen moving for longer, it may be anywhere");
-    binder.field("max_unseen_way_m", max_unseen_way_m, {0.0, 10.0}, "the same for the way it may have gone meanwhile");
   }
 };
 
@@ -149,39 +111,20 @@ struct OrbConfig {
 /// How cells of the depth grid join to clusters; docs/theory/dynamic_points.md Eq. (1).
 struct ClusterConfig {
   double step_m = 0.03;
-  double step_factor_per_m = 0.012;
-  int min_cells = 12;
 
   void bind(auto& binder) {
     binder.field("step_m", step_m, {0.001, 1.0}, "depth step that separates neighbouring cells");
-    binder.field("step_factor_per_m", step_factor_per_m, {0.0, 1.0}, "plus this times depth squared");
-    binder.field("min_cells", min_cells, {1, 10000}, "smaller clusters are ignored");
   }
 };
 
 /// How a box becomes a mask.
 struct MaskConfig {
-  bool whole_boxes = false;  ///< the box is the object, whatever its depth
-  bool holes = true;         ///< cells without depth next to an object belong to it
-  double min_share = 0.15;
-  double max_object_depth_m = 0.5;
-  double min_contained = 0.5;
-  double min_outline_step_m = 0.15;
-  double min_outline_share = 0.3;
-  int dilate_cells = 1;
-
-  void bind(auto& binder) {
-    binder.field("min_share", min_share, {0.01, 1.0},
-                 "the object is the nearest cluster with this share of the measured cells of its box");
-    binder.field("max_object_depth_m", max_object_depth_m, {0.05, 5.0},
-                 "cells farther from the object's median depth do not belong to it");
-    binder.field("min_contained", min_contained, {0.0, 1.0},
-                 "with this share inside the box, the whole cluster is the object");
-    binder.field("min_outline_step_m", min_outline_step_m, {0.0, 5.0}, "depth step at the outline of an object");
-    binder.field("min_outline_share", min_outline_share, {0.0, 1.0},
-                 "share of the outline with such a step; less: a picture on a wall");
-    binder.field("dilate_cells", dilate_cells, {0, 10}, "masks grow by this many cells");
-  }
+  bool whole_boxes = false;          ///< the box is the object, whatever its depth
+  bool holes = true;                 ///< cells without depth next to an object belong to it
+  double max_object_depth_m = 0.5;   ///< cells farther from the object's median depth do not belong to it
+  double min_outline_step_m = 0.15;  ///< depth step at the outline of an object
+  double min_outline_share = 0.3;    ///< share of the outline with such a step; less: a picture on a wall
+  int dilate_cells = 1;              ///< masks grow by this many cells
 };
 
 /// How the belief that a surface is static grows and fades; docs/theory/dynamic_points.md Eq. (6)-(8).
@@ -189,48 +132,26 @@ struct BeliefConfig {
   double background_prior = 0.9;
   double medium_prior = 0.5;
   double high_prior = 0.1;
-  double gain_per_s = 10.0;
   double high_gain_per_s = 2.5;
   double highest_probability = 0.99;
   double high_limit = 0.6;
   double lowest_probability = 0.05;
-  double forget_s = 2.0;
-  double min_moving_cells = 0.2;
-  int min_moving_votes = 8;
-  double min_moving_votes_share = 0.35;
   double drift_sigmas = 4.0;
   double drift_floor_px = 0.5;
-  double max_dynamic_cells = 0.05;
-  double min_lasting_cells = 0.3;
-  int min_resting_votes = 12;
-  double min_resting_ratio = 5.0;
-  double min_used_probability = 0.5;
 
   void bind(auto& binder) {
     binder.field("background_prior", background_prior, {0.0, 1.0},
                  "static probability of a new surface: no class, a low level, or a picture on a wall");
     binder.field("medium_prior", medium_prior, {0.0, 1.0}, "the same on an object of a medium level");
     binder.field("high_prior", high_prior, {0.0, 1.0}, "the same on an object of a high level");
-    binder.field("gain_per_s", gain_per_s, {0.0, 1000.0}, "log-odds for each second at rest");
     binder.field("high_gain_per_s", high_gain_per_s, {0.0, 1000.0}, "the same for a high level");
     binder.field("highest_probability", highest_probability, {0.5, 1.0},
                  "evidence adds up to this and no further, so that it can be outweighed");
     binder.field("high_limit", high_limit, {0.0, 1.0}, "the same for a high level");
     binder.field("lowest_probability", lowest_probability, {0.0, 0.5}, "what moves falls to this at once");
-    binder.field("forget_s", forget_s, {0.01, 1000.0},
-                 "time constant with which a belief returns to the prior without a statement");
-    binder.field("min_moving_cells", min_moving_cells, {0.01, 1.0}, "share of its cells dynamic: the object moves");
-    binder.field("min_moving_votes", min_moving_votes, {1, 2048}, "or this many of its features displaced");
-    binder.field("min_moving_votes_share", min_moving_votes_share, {0.01, 1.0}, "... and this share of them");
     binder.field("drift_sigmas", drift_sigmas, {0.5, 1000.0},
                  "or their median shift longer than this many standard deviations");
     binder.field("drift_floor_px", drift_floor_px, {0.0, 100.0}, "... to which the pose adds this much, px");
-    binder.field("max_dynamic_cells", max_dynamic_cells, {0.0, 1.0}, "share of its cells dynamic: less, it may rest");
-    binder.field("min_lasting_cells", min_lasting_cells, {0.0, 1.0}, "... this share there 0.4 s ago");
-    binder.field("min_resting_votes", min_resting_votes, {0, 2048}, "... this many features at their place");
-    binder.field("min_resting_ratio", min_resting_ratio, {1.0, 1000.0}, "... this many times more than displaced ones");
-    binder.field("min_used_probability", min_used_probability, {0.0, 1.0},
-                 "surfaces at least this probably static take part in the quick pose, whatever their class");
   }
 };
 
@@ -250,18 +171,9 @@ struct FusionConfig {
 
 /// Mode `epipolar`, DS-SLAM's moving consistency check.
 struct EpipolarConfig {
-  int max_corners = 1000;
-  double corner_distance_px = 8;     ///< between two corners
-  int border_px = 5;                 ///< matches that end nearer to the border are dropped
-  double max_patch_difference = 25;  ///< mean grey value difference of the 3x3 patches; more: no match
-  double ransac_distance_px = 0.2;   ///< of the matches that the fundamental matrix is made of
-  double max_distance_px = 1;
   int max_still_points = 5;
 
   void bind(auto& binder) {
-    binder.field("max_corners", max_corners, {50, 10000}, "mode epipolar: corners followed");
-    binder.field("max_distance_px", max_distance_px, {0.1, 20.0},
-                 "mode epipolar: a point farther from its epipolar line has moved");
     binder.field("max_still_points", max_still_points, {0, 1000},
                  "mode epipolar: with more moving points on a person, the person moves");
   }
@@ -309,7 +221,6 @@ struct FilterConfig {
     }
     binder.section("orb", orb);
     binder.section("clusters", clusters);
-    binder.section("masks", masks);
     binder.section("ego", ego_motion);
     binder.section("imu", gyroscope);
     binder.section("geometry", geometry);

@@ -10,25 +10,16 @@ namespace rtd::filter {
 
 /// Quick pose estimate.
 struct EgoMotionConfig {
+  /// Half side of the search window: the camera's turn may differ so much from the prediction.
   double window_rad_s = 0.57;
-  int max_hamming = 64;
-  double max_ratio = 0.85;
-  int max_observations = 350;
+  int max_hamming = 64;        ///< largest descriptor distance of a match
+  double max_ratio = 0.85;     ///< best to second best distance
+  int max_observations = 350;  ///< per pose optimisation
   int min_inliers = 20;
-  double min_image_share = 0.25;
-  int max_proposals = 6;
-  int max_proposal_sightings = 100;
+  int max_proposals = 6;  ///< surfaces that propose a motion
 
   void bind(auto& binder) {
-    binder.field("window_rad_s", window_rad_s, {0.04, 10.0},
-                 "half side of the search window: the camera's turn may differ so much from the prediction");
-    binder.field("max_hamming", max_hamming, {1, 256}, "largest descriptor distance of a match");
-    binder.field("max_ratio", max_ratio, {0.1, 1.0}, "best to second best distance");
-    binder.field("max_observations", max_observations, {20, 2048}, "per pose optimisation");
     binder.field("min_inliers", min_inliers, {6, 1000}, "fewer: no pose, geometry makes no statement");
-    binder.field("min_image_share", min_image_share, {0.0, 1.0}, "if less of the image agrees on a motion: no pose");
-    binder.field("max_proposals", max_proposals, {0, 64}, "surfaces that propose a motion");
-    binder.field("max_proposal_sightings", max_proposal_sightings, {6, 2048}, "features per proposal");
   }
 };
 
@@ -56,22 +47,13 @@ struct GeometryConfig {
   double tau_sigmas = 5.0;
   double max_view_angle_deg = 30.0;
   double max_baseline_m = 0.8;
-  int max_views = 6;
-  int min_cluster_statements = 30;
-  double min_violated_share = 0.2;
+  int max_views = 6;  ///< reference views per frame
   double max_unsettled_share = 0.05;
-  int min_region_cells = 40;
-  int min_resting_cells = 400;
-  double min_resting_ratio = 5.0;
+  double min_resting_ratio = 5.0;  ///< this many times more features at their place than displaced: at rest
   int min_moving_features = 12;
-  double min_moving_share = 0.6;
   int min_creeping_features = 6;
-  double min_creeping_share = 0.7;
-  double max_static_chi2 = 6.0;
-  double min_moving_chi2 = 16.0;
   double memory_s = 1.0;
-  double loose_memory_s = 0.17;
-  double max_dynamic_share = 0.75;
+  double loose_memory_s = 0.17;  ///< memory of a moving part of a resting surface
 
   void bind(auto& binder) {
     binder.field("noise_offset_m", noise.offset_m, {0.0, 0.1}, "standard deviation of a depth: this");
@@ -82,32 +64,13 @@ struct GeometryConfig {
                  "no statement at a larger angle between the two viewing rays (paper section III-A)");
     binder.field("max_baseline_m", max_baseline_m, {0.01, 10.0},
                  "keyframes from farther away saw the other side of things and are not used");
-    binder.field("max_views", max_views, {1, 30}, "reference views per frame");
-    binder.field("min_cluster_statements", min_cluster_statements, {1, 10000},
-                 "cells with a statement before a cluster is judged");
-    binder.field("min_violated_share", min_violated_share, {0.01, 1.0}, "of them violated: the cluster is dynamic");
     binder.field("max_unsettled_share", max_unsettled_share, {0.0, 1.0},
                  "if recent views see through a larger share of a surface, it has not come to rest");
-    binder.field("min_region_cells", min_region_cells, {1, 10000},
-                 "smaller moving regions are noise: depth cameras see thin structures now and then");
-    binder.field("min_resting_cells", min_resting_cells, {1, 100000},
-                 "a part of a moving surface may rest from this size on");
-    binder.field("min_resting_ratio", min_resting_ratio, {1.0, 1000.0},
-                 "this many times more features at their place than displaced: at rest");
     binder.field("min_moving_features", min_moving_features, {1, 2048},
                  "displaced features before a surface is judged by them");
-    binder.field("min_moving_share", min_moving_share, {0.05, 1.0}, "of its features displaced: it moves");
     binder.field("min_creeping_features", min_creeping_features, {1, 2048}, "the same over a second, for slow movers");
-    binder.field("min_creeping_share", min_creeping_share, {0.05, 1.0},
-                 "of its features displaced over a second: it moves");
-    binder.field("max_static_chi2", max_static_chi2, {0.1, 100.0},
-                 "squared normalised displacement up to which a feature is at its place");
-    binder.field("min_moving_chi2", min_moving_chi2, {0.1, 1000.0}, "... and from which it has moved");
     binder.field("memory_s", memory_s, {0.0, 2.55},
                  "for how long a dynamic surface is remembered after the last evidence");
-    binder.field("loose_memory_s", loose_memory_s, {0.0, 2.55}, "the same for a moving part of a resting surface");
-    binder.field("max_dynamic_share", max_dynamic_share, {0.1, 1.0},
-                 "if more of the image is dynamic, the pose is wrong: no statement");
   }
 };
 

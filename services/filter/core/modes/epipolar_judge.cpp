@@ -12,6 +12,15 @@
 namespace rtd::filter {
 namespace {
 
+constexpr int kMaxCorners = 1000;           ///< corners followed
+constexpr double kCornerQuality = 0.01;     ///< of the strongest corner
+constexpr double kCornerDistancePx = 8;     ///< between two corners
+constexpr int kBorderPx = 5;                ///< matches that end nearer to the border are dropped
+constexpr double kMaxPatchDifference = 25;  ///< mean grey value difference of the 3x3 patches; more: no match
+constexpr double kRansacDistancePx = 0.2;   ///< of the matches that the fundamental matrix is made of
+constexpr double kRansacConfidence = 0.99;  ///< that a sample without outliers was drawn
+constexpr double kMaxDistancePx = 1;        ///< a point farther from its epipolar line has moved
+
 constexpr std::size_t kMinMatches = 16;  // twice what the 8-point algorithm needs
 
 /// Mean absolute difference of grey values of the 3x3 patches.
@@ -60,9 +69,9 @@ std::vector<int> cells_of_points(const Scene& scene, const std::vector<cv::Point
 
 }  // namespace
 
-std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now, const EpipolarConfig& config) {
+std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now) {
   std::vector<cv::Point2f> corners, ends;
-  cv::goodFeaturesToTrack(before, corners, config.max_corners, 0.01, config.corner_distance_px);
+  cv::goodFeaturesToTrack(before, corners, kMaxCorners, kCornerQuality, kCornerDistancePx);
   if (corners.empty()) return {};
   std::vector<unsigned char> found;
   std::vector<float> errors;
@@ -70,24 +79,24 @@ std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now,
   std::vector<FlowMatch> matches;
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const FlowMatch match{corners[i], ends[i]};
-    if (found[i] == 0 || near_border(match.now, now.size(), config.border_px)) continue;
-    if (patch_difference(before, now, match) <= config.max_patch_difference) matches.push_back(match);
+    if (found[i] == 0 || near_border(match.now, now.size(), kBorderPx)) continue;
+    if (patch_difference(before, now, match) <= kMaxPatchDifference) matches.push_back(match);
   }
   return matches;
 }
 
-std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera,
-                                            const EpipolarConfig& config) {
+std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches,
+                                            const geometry::CameraModel& camera) {
   if (matches.size() < kMinMatches) return {};
   const std::vector<cv::Point2f> before = undistorted(matches, &FlowMatch::before, camera);
   const std::vector<cv::Point2f> now = undistorted(matches, &FlowMatch::now, camera);
   cv::setRNGSeed(0);  // the same input gives the same result
-  const cv::Mat found = cv::findFundamentalMat(before, now, cv::FM_RANSAC, config.ransac_distance_px, 0.99);
+  const cv::Mat found = cv::findFundamentalMat(before, now, cv::FM_RANSAC, kRansacDistancePx, kRansacConfidence);
   if (found.rows != 3 || found.cols != 3 || !cv::checkRange(found)) return {};
   const cv::Matx33d fundamental(found.ptr<double>());
   std::vector<cv::Point2f> moving;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (epipolar_distance_px(fundamental, before[i], now[i]) > config.max_distance_px) moving.push_back(matches[i].now);
+    if (epipolar_distance_px(fundamental, before[i], now[i]) > kMaxDistancePx) moving.push_back(matches[i].now);
   }
   return moving;
 }
@@ -114,7 +123,7 @@ Verdict EpipolarJudge::judge(const Scene& scene, std::vector<msg::Feature> featu
   cv::cvtColor(scene.image.color_bgr, grey, cv::COLOR_BGR2GRAY);
   std::vector<cv::Point2f> moving_points;
   if (grey_before_.size() == grey.size()) {
-    moving_points = find_moving_points(follow_corners(grey_before_, grey, config_), scene.image.camera, config_);
+    moving_points = find_moving_points(follow_corners(grey_before_, grey), scene.image.camera);
   }
   grey_before_ = grey;
   const CellMask moving = moving_masks(scene, moving_points, config_.max_still_points, dilate_cells_);

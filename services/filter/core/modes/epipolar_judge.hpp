@@ -18,14 +18,13 @@ struct FlowMatch {
 
 /// Corners followed by pyramidal Lucas-Kanade flow. Left out: corners that leave the image or end near its border, and
 /// those that no longer look the same (3x3 patch). Both images CV_8UC1 of one size.
-std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now, const EpipolarConfig& config);
+std::vector<FlowMatch> follow_corners(const cv::Mat& before, const cv::Mat& now);
 
 /// DS-SLAM's moving consistency check (Yu et al., IROS 2018, section III-C): the fundamental matrix of most matches by
-/// RANSAC; where a match ends farther from its epipolar line than the config's distance, it has moved. Returns the
+/// RANSAC; where a match ends farther from its epipolar line than 1 px, it has moved. Returns the
 /// current raw pixels of those; none when there are too few matches for a matrix. Motion along the epipolar line is not
 /// seen: this is the weakness of the check, as is the freedom of the matrix when the camera only turns.
-std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera,
-                                            const EpipolarConfig& config);
+std::vector<cv::Point2f> find_moving_points(const std::vector<FlowMatch>& matches, const geometry::CameraModel& camera);
 
 /// DS-SLAM's rule (Yu et al., IROS 2018): people with enough moving points on them are removed whole, everything else
 /// stays. Its SegNet mask is our depth mask in the box.

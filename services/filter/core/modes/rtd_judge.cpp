@@ -11,6 +11,9 @@
 namespace rtd::filter {
 namespace {
 
+/// Surfaces at least this probably static take part in the quick pose, whatever their class.
+constexpr double kMinUsedProbability = 0.5;
+
 constexpr std::int64_t kCentisecondNs = 10'000'000;
 constexpr double kKnownToRest = 0.98;  // belief of a surface whose memory of motion came from a neighbour
 constexpr int kBesidePeopleCells = 8;
@@ -99,7 +102,7 @@ CellMask RtdJudge::without_known_surfaces(const Scene& scene, CellMask may_move)
   if (views_.empty() || !config_.techniques.belief || !config_.techniques.resting_objects) return may_move;
   if (std::none_of(may_move.begin(), may_move.end(), [](int cell) { return cell != 0; })) return may_move;
   const CellBeliefs beliefs = recall_beliefs(scene, predict_pose(scene));
-  const float enough = log_odds(config_.belief.min_used_probability);
+  const float enough = log_odds(kMinUsedProbability);
   for (std::size_t cell = 0; cell < beliefs.size(); ++cell) {
     if (is_known(beliefs[cell]) && beliefs[cell] >= enough) may_move[cell] = 0;
   }

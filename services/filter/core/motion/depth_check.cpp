@@ -81,7 +81,8 @@ class ReferenceCheck {
     const Eigen::Isometry3d T_reference_camera = view.T_world_camera.inverse() * pose.T_world_camera;
     rotation_ = T_reference_camera.linear().cast<float>();
     translation_ = T_reference_camera.translation().cast<float>();
-    never_oblique_m_ = 1.01F * translation_.norm() / std::sqrt(1 - min_cosine_ * min_cosine_);
+    constexpr float kRounding = 1.01F;
+    never_oblique_m_ = kRounding * translation_.norm() / std::sqrt(1 - min_cosine_ * min_cosine_);
   }
 
   void judge(const MeasuredCells& measured, DepthEvidence& evidence) const {

@@ -9,6 +9,13 @@
 namespace rtd::filter {
 namespace {
 
+/// Smaller moving regions are noise: depth cameras see thin structures now and then.
+constexpr int kMinRegionCells = 40;
+constexpr int kMinClusterStatements = 30;  ///< cells with a statement before a cluster is judged
+constexpr double kMinViolatedShare = 0.2;  ///< of them violated: the cluster is dynamic
+constexpr int kMinRestingCells = 400;      ///< a part of a moving surface may rest from this size on
+constexpr double kMaxDynamicShare = 0.75;  ///< if more of the image is dynamic, the pose is wrong: no statement
+
 constexpr double kMinRememberedShare = 0.4;
 constexpr int kForgetFaster = 4;  // a surface at rest is forgotten so many times faster
 
@@ -34,9 +41,9 @@ std::vector<ClusterEvidence> gather(const DepthClusters& clusters, const DepthEv
   return gathered;
 }
 
-bool violates(const ClusterEvidence& cluster, const GeometryConfig& config) {
-  return cluster.violating >= config.min_region_cells / 2 && cluster.stated >= config.min_cluster_statements &&
-         cluster.violating >= config.min_violated_share * cluster.stated;
+bool violates(const ClusterEvidence& cluster) {
+  return cluster.violating >= kMinRegionCells / 2 && cluster.stated >= kMinClusterStatements &&
+         cluster.violating >= kMinViolatedShare * cluster.stated;
 }
 
 std::uint8_t what_is_left(int hold_cs, int elapsed_cs) {
@@ -60,9 +67,8 @@ bool rests(const ClusterEvidence& cluster, const MotionVotes& votes, std::size_t
   const auto at_place = [&](const FeatureVotes& cast) {
     return vote_count(cast.resting, index) >= config.min_resting_ratio * vote_count(cast.moving, index);
   };
-  return cluster.seen >= config.min_cluster_statements &&
-         cluster.violating <= config.max_unsettled_share * cluster.seen && votes.quick.cluster_rests(index, config) &&
-         at_place(votes.slow);
+  return cluster.seen >= kMinClusterStatements && cluster.violating <= config.max_unsettled_share * cluster.seen &&
+         votes.quick.cluster_rests(index, config) && at_place(votes.slow);
 }
 
 /// Per cluster: for how many 1/100 s it counts as dynamic, 0 = not.
@@ -72,7 +78,7 @@ std::vector<std::uint8_t> judge_clusters(const DepthClusters& clusters, const De
   const std::vector<ClusterEvidence> gathered = gather(clusters, evidence, remembered.hold_cs);
   std::vector<std::uint8_t> hold_cs(gathered.size(), 0);
   for (std::size_t i = 0; i < gathered.size(); ++i) {
-    if (violates(gathered[i], config) || votes.quick.cluster_moves(i, config) || creeps(votes, i, config)) {
+    if (violates(gathered[i]) || votes.quick.cluster_moves(i, config) || creeps(votes, i, config)) {
       hold_cs[i] = to_cs(config.memory_s);
     } else if (gathered[i].remembered >= kMinRememberedShare * clusters.cells[i]) {
       const int faster = rests(gathered[i], votes, i, config) ? kForgetFaster : 1;
@@ -99,7 +105,7 @@ CellMask resting_parts(const DepthClusters& clusters, const DepthEvidence& evide
   const std::size_t cells = clusters.label.size();
   const VotesByCell quick = by_cell(votes.quick, cells), slow = by_cell(votes.slow, cells);
   const auto rests = [&](const std::vector<int>& region) {
-    if (static_cast<int>(region.size()) < config.min_resting_cells) return false;
+    if (static_cast<int>(region.size()) < kMinRestingCells) return false;
     const auto [at_place, displaced] = sum_votes(quick, region);
     const auto [long_at_place, long_displaced] = sum_votes(slow, region);
     return at_place >= config.min_moving_features && at_place >= config.min_resting_ratio * displaced &&
@@ -157,7 +163,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
     }
   }
   const CellMask groups = keep_regions(clusters.shape, compact(clusters.shape, loose), [&](const auto& region) {
-    return static_cast<int>(region.size()) >= config.min_region_cells;
+    return static_cast<int>(region.size()) >= kMinRegionCells;
   });
   for (std::size_t cell = 0; cell < none.size(); ++cell) {
     regions.hold_cs[cell] = std::max(regions.hold_cs[cell], groups[cell]);
@@ -165,7 +171,7 @@ DynamicRegions find_dynamic_regions(const DepthClusters& clusters, const DepthEv
   const auto dynamic = std::count_if(regions.hold_cs.begin(), regions.hold_cs.end(), [](int n) { return n > 0; });
   const auto measured =
       std::count_if(clusters.label.begin(), clusters.label.end(), [](int label) { return label >= 0; });
-  if (static_cast<double>(dynamic) > config.max_dynamic_share * static_cast<double>(measured)) return {false, none, 0};
+  if (static_cast<double>(dynamic) > kMaxDynamicShare * static_cast<double>(measured)) return {false, none, 0};
   regions.clusters = static_cast<int>(std::count_if(of_cluster.begin(), of_cluster.end(), [](int n) { return n > 0; }));
   return regions;
 }

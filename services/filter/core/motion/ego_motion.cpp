@@ -15,6 +15,8 @@
 namespace rtd::filter {
 namespace {
 
+constexpr double kMinImageShare = 0.25;  ///< if less of the image agrees on a motion: no pose
+
 struct Best {
   std::uint32_t index = 0;
   int hamming = std::numeric_limits<int>::max(), second = std::numeric_limits<int>::max();
@@ -129,7 +131,7 @@ std::vector<FeatureMatch> usable(const std::vector<FeatureMatch>& matches, const
 /// so that neither drift of the quick pose nor a map that follows the mover appears as motion of everything else. Empty
 /// where no view is old enough (0.4 s) or the image does not agree. docs/theory/dynamic_points.md section 3.
 FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry3d& T_world_camera,
-                              const EgoMotionConfig& config, const GeometryConfig& geometry) {
+                              const EgoMotionConfig& config) {
   const View& old = input.views.long_ago(input.stamp_ns, input.look_back_ns);
   const std::int64_t age_ns = msg::minus_ns(input.stamp_ns, old.stamp_ns);
   if (age_ns < kMinSlowAgeNs) return {};
@@ -142,8 +144,7 @@ FeatureVotes count_slow_votes(const EgoMotionInput& input, const Eigen::Isometry
   const StaticConsensus consensus =
       find_static_consensus(sightings, input.current.camera, T_world_camera, config, rotation_since(old, input));
   if (consensus.image_share < kMinSlowImageShare) return {};
-  return count_votes(to_sightings(matches, input), input.current.camera, consensus.T_world_camera, input.clusters,
-                     geometry);
+  return count_votes(to_sightings(matches, input), input.current.camera, consensus.T_world_camera, input.clusters);
 }
 
 }  // namespace
@@ -225,10 +226,10 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   const KnownRotation rotation = rotation_since(near, input);
   const StaticConsensus consensus =
       find_static_consensus(recent, camera, input.T_world_camera_predicted, config, rotation);
-  if (consensus.image_share < config.min_image_share) return ego;
+  if (consensus.image_share < kMinImageShare) return ego;
 
   const auto all_near = to_sightings(near_measured, input);
-  const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters, geometry);
+  const FeatureVotes first_votes = count_votes(all_near, camera, consensus.T_world_camera, input.clusters);
   std::vector<char> moves(none_moves);
   for (std::size_t i = 0; i < moves.size(); ++i) moves[i] = first_votes.cluster_moves(i, geometry) ? 1 : 0;
 
@@ -246,10 +247,9 @@ EgoMotion estimate_ego_motion(const EgoMotionInput& input, const EgoMotionConfig
   ego.settled = msg::minus_ns(input.stamp_ns, near.stamp_ns) >= kMinSettledAgeNs;
   ego.T_world_camera = refined.T_world_camera;
   ego.inliers = refined.inliers;
-  ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters, geometry);
-  ego.old_votes =
-      count_votes(to_sightings(old_matches, input), camera, refined.T_world_camera, input.clusters, geometry);
-  if (input.look_back_ns > 0) ego.slow_votes = count_slow_votes(input, refined.T_world_camera, config, geometry);
+  ego.votes = count_votes(all_near, camera, refined.T_world_camera, input.clusters);
+  ego.old_votes = count_votes(to_sightings(old_matches, input), camera, refined.T_world_camera, input.clusters);
+  if (input.look_back_ns > 0) ego.slow_votes = count_slow_votes(input, refined.T_world_camera, config);
   return ego;
 }
 

@@ -3,11 +3,19 @@
 #include "services/filter/core/motion/feature_votes.hpp"
 
 namespace rtd::filter {
+namespace {
+
+constexpr double kMinMovingShare = 0.6;    ///< of its features displaced: it moves
+constexpr double kMinCreepingShare = 0.7;  ///< of its features displaced over a second: it moves
+constexpr double kMaxStaticChi2 = 6.0;     ///< squared normalised displacement up to which a feature is at its place
+constexpr double kMinMovingChi2 = 16.0;    ///< ... and from which it has moved
+
+}  // namespace
 
 bool FeatureVotes::cluster_moves(std::size_t cluster, const GeometryConfig& config) const {
   if (cluster >= moving.size()) return false;
   const int cast = resting[cluster] + moving[cluster];
-  return moving[cluster] >= config.min_moving_features && moving[cluster] >= config.min_moving_share * cast;
+  return moving[cluster] >= config.min_moving_features && moving[cluster] >= kMinMovingShare * cast;
 }
 
 bool FeatureVotes::cluster_rests(std::size_t cluster, const GeometryConfig& config) const {
@@ -18,12 +26,11 @@ bool FeatureVotes::cluster_rests(std::size_t cluster, const GeometryConfig& conf
 bool FeatureVotes::cluster_creeps(std::size_t cluster, const GeometryConfig& config) const {
   if (cluster >= moving.size()) return false;
   const int cast = resting[cluster] + moving[cluster];
-  return moving[cluster] >= config.min_creeping_features && moving[cluster] >= config.min_creeping_share * cast;
+  return moving[cluster] >= config.min_creeping_features && moving[cluster] >= kMinCreepingShare * cast;
 }
 
 FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
-                         const GeometryConfig& config) {
+                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters) {
   FeatureVotes votes{{}, std::vector<int>(clusters.cells.size(), 0), std::vector<int>(clusters.cells.size(), 0)};
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   for (const PointSighting& sighting : sightings) {
@@ -32,8 +39,8 @@ FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geom
     const int cell = clusters.shape.nearest_cell(sighting.pixel.x(), sighting.pixel.y());
     votes.shifts.push_back({cell, static_cast<float>(shift_px->x()), static_cast<float>(shift_px->y())});
     const double chi2 = shift_px->squaredNorm() / (sighting.sigma_px * sighting.sigma_px);
-    const bool moving = chi2 > config.min_moving_chi2;
-    if (!moving && chi2 >= config.max_static_chi2) continue;
+    const bool moving = chi2 > kMinMovingChi2;
+    if (!moving && chi2 >= kMaxStaticChi2) continue;
     votes.votes.push_back({cell, moving});
     if (sighting.cluster >= 0) ++(moving ? votes.moving : votes.resting)[static_cast<std::size_t>(sighting.cluster)];
   }

@@ -36,8 +36,7 @@ struct FeatureVotes {
   bool cluster_creeps(std::size_t cluster, const GeometryConfig& config) const;
 };
 FeatureVotes count_votes(const std::vector<PointSighting>& sightings, const geometry::CameraModel& camera,
-                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters,
-                         const GeometryConfig& config);
+                         const Eigen::Isometry3d& T_world_camera, const DepthClusters& clusters);
 
 /// The votes of the features on each cell.
 struct VotesByCell {

@@ -13,6 +13,8 @@
 namespace rtd::filter {
 namespace {
 
+constexpr int kMaxProposalSightings = 100;  ///< features per proposal
+
 constexpr double kKeypointSigmaPx = 0.7;  // at octave 0
 constexpr double kMaxChi2 = 6.0;          // 95 % of chi2 with 2 degrees of freedom
 
@@ -53,9 +55,10 @@ std::vector<std::vector<PointSighting>> proposing_groups(const std::vector<Point
 }  // namespace
 
 double displacement_sigma_px(int octave, const geometry::CameraModel& camera) {
+  constexpr double kOctaveScale = 1.2;  // ORB-SLAM2's, the default of OrbConfig
   const auto& p = camera.parameters();
   const int scale = msg::feature_scale(static_cast<std::uint32_t>(p.width), static_cast<std::uint32_t>(p.height));
-  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(1.2, octave) / scale;
+  return std::numbers::sqrt2 * kKeypointSigmaPx * std::pow(kOctaveScale, octave) / scale;
 }
 
 std::optional<Eigen::Vector2d> displacement_px(const PointSighting& s, const geometry::CameraModel& camera,
@@ -102,7 +105,7 @@ StaticConsensus find_static_consensus(const std::vector<PointSighting>& sighting
   };
   propose(T_world_camera_predicted);
   for (const std::vector<PointSighting>& group : proposing_groups(sightings, config)) {
-    const auto thinned = vision::thin_out(group, static_cast<std::size_t>(config.max_proposal_sightings));
+    const auto thinned = vision::thin_out(group, static_cast<std::size_t>(kMaxProposalSightings));
     const RefinedPose pose = refine_pose(thinned, camera, T_world_camera_predicted, config.min_inliers, rotation);
     if (pose.success) propose(pose.T_world_camera);
   }

@@ -14,6 +14,9 @@
 namespace rtd::filter {
 namespace {
 
+constexpr double kStepFactorPerM = 0.012;  ///< the step grows by this times depth squared
+constexpr int kMinClusterCells = 12;       ///< smaller clusters are ignored
+
 constexpr float kUnmeasuredNear = std::numeric_limits<float>::max();
 
 /// Per cell: are enough of its 3x3 neighbourhood measured?
@@ -99,7 +102,7 @@ class DisjointCells {
 };
 
 void join_neighbours(const DepthGrid& grid, const ClusterConfig& config, DisjointCells& sets) {
-  const auto step = static_cast<float>(config.step_m), factor = static_cast<float>(config.step_factor_per_m);
+  const auto step = static_cast<float>(config.step_m), factor = static_cast<float>(kStepFactorPerM);
   const auto are_near = [&](int a, int b) {
     const float za = grid.depth_m[static_cast<std::size_t>(a)], zb = grid.depth_m[static_cast<std::size_t>(b)];
     const float nearer = std::min(za, zb);
@@ -193,7 +196,7 @@ DepthClusters find_depth_clusters(const DepthGrid& grid, const ClusterConfig& co
   DepthClusters clusters{grid.shape, std::vector<std::int32_t>(cells, -1), {}};
   std::vector<std::int32_t> number(cells, -1);
   for (std::size_t i = 0; i < cells; ++i) {
-    if (root[i] < 0 || size[static_cast<std::size_t>(root[i])] < config.min_cells) continue;
+    if (root[i] < 0 || size[static_cast<std::size_t>(root[i])] < kMinClusterCells) continue;
     auto& label = number[static_cast<std::size_t>(root[i])];
     if (label < 0) {
       label = clusters.count();

@@ -14,6 +14,10 @@
 namespace rtd::filter {
 namespace {
 
+/// The object is the nearest cluster with this share of the measured cells of its box.
+constexpr double kMinShare = 0.15;
+constexpr double kMinContained = 0.5;  ///< with this share inside the box, the whole cluster is the object
+
 constexpr float kAbsurdPx = 1e5F;
 
 bool is_box(const vision::Detection& box) {
@@ -106,7 +110,7 @@ std::vector<Share> shares_of(const ClusterInBox& object, const std::vector<Clust
   std::vector<Share> shares(clusters.cells.size(), Share::kNothing);
   for (const ClusterInBox& cluster : inside) {
     const auto label = static_cast<std::size_t>(cluster.label);
-    const bool contained = static_cast<double>(cluster.cells.size()) / clusters.cells[label] >= config.min_contained;
+    const bool contained = static_cast<double>(cluster.cells.size()) / clusters.cells[label] >= kMinContained;
     const bool cut_off = contained && std::abs(cluster.median_m - object.median_m) <= config.max_object_depth_m;
     if (cluster.label != object.label && !cut_off) continue;
     shares[label] = contained ? Share::kAll : Share::kNearItsDepth;
@@ -219,7 +223,7 @@ const ClusterInBox* choose_cluster(const ObjectBox& from, const std::vector<Clus
                                    const std::optional<PixelCells>& pixels, const MaskConfig& config) {
   if (from.carried && from.depth_m > 0) return cluster_at_depth(inside, from.depth_m, config.max_object_depth_m);
   const ClusterInBox* under = pixels ? cluster_on_pixels(inside, pixels->on) : nullptr;
-  return under != nullptr ? under : object_cluster(inside, config.min_share);
+  return under != nullptr ? under : object_cluster(inside, kMinShare);
 }
 
 /// The holes next to an object with those in its pixels, ascending.
@@ -287,9 +291,13 @@ std::vector<vision::Detection> usable_detections(const std::vector<vision::Detec
 }
 
 double depth_in_box(const vision::Detection& box, const geometry::CameraModel& camera, const DepthGrid& grid) {
-  const vision::Detection middle{
-      box.class_name,      box.score,           box.x_px + 0.2F * box.width_px, box.y_px + 0.2F * box.height_px,
-      0.6F * box.width_px, 0.6F * box.height_px};
+  constexpr float kMargin = 0.2F, kMiddle = 0.6F;  // of a side: at the edges of a box is mostly background
+  const vision::Detection middle{box.class_name,
+                                 box.score,
+                                 box.x_px + kMargin * box.width_px,
+                                 box.y_px + kMargin * box.height_px,
+                                 kMiddle * box.width_px,
+                                 kMiddle * box.height_px};
   const std::optional<CellBox> cells = to_cells(middle, camera, grid.shape);
   std::vector<float> depths;
   if (cells) {

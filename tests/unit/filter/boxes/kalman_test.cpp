@@ -16,7 +16,7 @@ Box box(double x, double y, double width, double height) {
 }
 
 TEST(BoxKalman, learns_a_constant_velocity) {
-  BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
+  BoxKalman filter(box(100, 200, 80, 200));
   for (int i = 1; i <= 30; ++i) {
     filter.predict(kDetectionPeriodS);
     filter.detected(box(100 + 4 * i, 200, 80, 200));
@@ -29,7 +29,7 @@ TEST(BoxKalman, learns_a_constant_velocity) {
 TEST(BoxKalman, is_closer_to_the_truth_than_noisy_boxes) {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 4);
-  BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
+  BoxKalman filter(box(100, 200, 80, 200));
   double filtered = 0, raw = 0;
   for (int i = 1; i <= 200; ++i) {
     const double truth = 100 + 2 * i, seen = truth + noise(random);
@@ -42,7 +42,7 @@ TEST(BoxKalman, is_closer_to_the_truth_than_noisy_boxes) {
 }
 
 TEST(BoxKalman, follows_the_flow_without_a_detection) {
-  BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
+  BoxKalman filter(box(100, 200, 80, 200));
   for (int i = 0; i < 15; ++i) {  // half a second, the object turns round in the middle
     filter.flowed({{i < 7 ? 5.0 : -5.0, 0}, 1.01}, kDetectionPeriodS);
     filter.predict(kDetectionPeriodS);
@@ -52,7 +52,7 @@ TEST(BoxKalman, follows_the_flow_without_a_detection) {
 }
 
 TEST(BoxKalman, becomes_less_certain_without_measurements_and_more_with_them) {
-  BoxKalman filter(box(100, 200, 80, 200), BoxNoise{});
+  BoxKalman filter(box(100, 200, 80, 200));
   const double first = filter.sigma_px(0);
   filter.predict(0.5);
   const double later = filter.sigma_px(0);
@@ -62,7 +62,7 @@ TEST(BoxKalman, becomes_less_certain_without_measurements_and_more_with_them) {
 }
 
 TEST(BoxKalman, treats_large_and_small_boxes_alike) {
-  BoxKalman small(box(100, 100, 20, 50), BoxNoise{}), large(box(1000, 1000, 200, 500), BoxNoise{});
+  BoxKalman small(box(100, 100, 20, 50)), large(box(1000, 1000, 200, 500));
   for (int i = 1; i <= 5; ++i) {
     small.predict(kDetectionPeriodS);
     large.predict(kDetectionPeriodS);
@@ -73,7 +73,7 @@ TEST(BoxKalman, treats_large_and_small_boxes_alike) {
 }
 
 TEST(BoxKalman, stays_a_box_whatever_is_measured) {
-  BoxKalman filter(box(100, 100, 20, 50), BoxNoise{});
+  BoxKalman filter(box(100, 100, 20, 50));
   for (int i = 0; i < 100; ++i) {
     filter.flowed({{1e4, -1e4}, 0.01}, kDetectionPeriodS);
     filter.predict(kDetectionPeriodS);

@@ -19,8 +19,6 @@ namespace {
 using test::MovingScene;
 using test::removed_share;
 
-const EpipolarConfig kConfig;
-
 /// Exact matches of points of a room, and of a mover, between two poses of the camera.
 class EpipolarCheckTest : public ::testing::Test {
  protected:
@@ -36,7 +34,7 @@ class EpipolarCheckTest : public ::testing::Test {
                           {static_cast<float>(now.x()), static_cast<float>(now.y())}});
     }
   }
-  std::size_t moving() const { return find_moving_points(matches_, camera_, kConfig).size(); }
+  std::size_t moving() const { return find_moving_points(matches_, camera_).size(); }
 
   std::mt19937_64 random_{3};
   geometry::CameraModel camera_ = test::pinhole();
@@ -89,7 +87,7 @@ TEST_F(EpipolarCheckTest, makes_no_statement_from_few_or_degenerate_matches) {
 TEST_F(EpipolarCheckTest, gives_the_same_result_twice) {
   add(200, {20, 20, 600, 440}, 1.5, 4.0);
   add(60, {240, 120, 160, 240}, 1.2, 1.4, {0.01, 0.03, 0});
-  EXPECT_EQ(find_moving_points(matches_, camera_, kConfig), find_moving_points(matches_, camera_, kConfig));
+  EXPECT_EQ(find_moving_points(matches_, camera_), find_moving_points(matches_, camera_));
 }
 
 TEST(FollowCorners, drop_corners_that_leave_the_image_or_look_different) {
@@ -97,16 +95,16 @@ TEST(FollowCorners, drop_corners_that_leave_the_image_or_look_different) {
   cv::Mat shifted;
   const cv::Mat affine = (cv::Mat_<double>(2, 3) << 1, 0, 4, 0, 1, 0);
   cv::warpAffine(image, shifted, affine, image.size(), cv::INTER_LINEAR);
-  const auto matches = follow_corners(image, shifted, kConfig);
+  const auto matches = follow_corners(image, shifted);
   EXPECT_GT(matches.size(), 300U);
   const auto right = std::count_if(matches.begin(), matches.end(), [](const FlowMatch& match) {
     return std::abs(match.now.x - match.before.x - 4) < 0.5F && std::abs(match.now.y - match.before.y) < 0.5F;
   });
   EXPECT_GE(static_cast<double>(right), 0.98 * static_cast<double>(matches.size()));
-  for (const FlowMatch& match : matches) EXPECT_LT(match.now.x, 640 - kConfig.border_px);
-  EXPECT_LT(follow_corners(image, test::textured_image({640, 480}, 99), kConfig).size(), matches.size() / 4)
+  for (const FlowMatch& match : matches) EXPECT_LT(match.now.x, 640 - 5);
+  EXPECT_LT(follow_corners(image, test::textured_image({640, 480}, 99)).size(), matches.size() / 4)
       << "another picture";
-  EXPECT_TRUE(follow_corners(cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)), image, kConfig).empty()) << "no corners";
+  EXPECT_TRUE(follow_corners(cv::Mat(480, 640, CV_8UC1, cv::Scalar(0)), image).empty()) << "no corners";
 }
 
 FilterConfig epipolar_config() {
@@ -169,10 +167,11 @@ TEST_F(EpipolarJudgeTest, needs_more_than_a_few_moving_points_on_a_mask) {
   const std::vector<SceneObject> person{{"person", 0.9F, MotionLevel::kHigh, {0, 1, 2}, false}};
   const test::TestScene scene(image);
   const auto masked = [&](std::size_t points) {
-    return moving_masks(scene.with(person), std::vector<cv::Point2f>(points, {5, 1}), kConfig.max_still_points, 0)[1];
+    return moving_masks(scene.with(person), std::vector<cv::Point2f>(points, {5, 1}), EpipolarConfig{}.max_still_points,
+                        0)[1];
   };
-  EXPECT_EQ(masked(static_cast<std::size_t>(kConfig.max_still_points)), 0);
-  EXPECT_EQ(masked(static_cast<std::size_t>(kConfig.max_still_points) + 1), 1);
+  EXPECT_EQ(masked(static_cast<std::size_t>(EpipolarConfig{}.max_still_points)), 0);
+  EXPECT_EQ(masked(static_cast<std::size_t>(EpipolarConfig{}.max_still_points) + 1), 1);
 }
 
 }  // namespace

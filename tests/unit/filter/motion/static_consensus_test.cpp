@@ -76,7 +76,7 @@ TEST_F(StaticConsensusTest, lets_the_features_of_a_mover_vote_against_it) {
   add(100, {0, 0, 640, 160}, 3.5, 0);
   add(40, {220, 160, 160, 240}, 1.2, 1, {0.05, 0, 0});
   DepthClusters clusters{{160, 120}, std::vector<std::int32_t>(160 * 120, 0), {100, 100}};
-  const FeatureVotes votes = count_votes(sightings_, camera_, T_world_camera_, clusters, GeometryConfig{});
+  const FeatureVotes votes = count_votes(sightings_, camera_, T_world_camera_, clusters);
   EXPECT_FALSE(votes.cluster_moves(0, GeometryConfig{}));
   EXPECT_TRUE(votes.cluster_moves(1, GeometryConfig{}));
   EXPECT_FALSE(votes.cluster_moves(99, GeometryConfig{})) << "a cluster without votes";
