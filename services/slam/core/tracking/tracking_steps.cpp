@@ -16,6 +16,10 @@ namespace {
 
 constexpr int kMinLandmarks = 10;  ///< of a first guess of the pose
 
+/// A landmark in its window: ORB-SLAM2's largest distance and ratio. In the whole image others are as similar by
+/// chance.
+constexpr MatchRules kInWindow{100, 0.8, RotationCheck::kOff}, kAnywhere{60, 0.8, RotationCheck::kOn};
+
 /// A landmark as the world point of a feature.
 Association associate(std::uint32_t feature, const LocalLandmark& landmark) {
   return {feature,          landmark.id,          landmark.position,  landmark.static_probability,
@@ -251,7 +255,7 @@ PoseGuess track_keyframe(const Frame& frame, const LocalKeyframe& keyframe, cons
   for (std::uint32_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (keyframe.landmarks[i] != kNoLandmark) features.push_back(i);
   }
-  const auto matches = match_by_descriptor(frame, *keyframe.frame, features, {60, 0.8, RotationCheck::kOn});
+  const auto matches = match_by_descriptor(frame, *keyframe.frame, features, kAnywhere);
   if (static_cast<int>(matches.size()) < kMinMatches) return {};
   std::vector<Association> associations;
   std::vector<vision::PoseObservation> observations;
@@ -284,7 +288,7 @@ PoseGuess track_around(const Frame& frame, const TrackedFrame& last, const Local
     if (view) search.push_back(make_search_point(*view, radius_px, landmark.descriptor, i));
   }
   std::vector<Association> associations;
-  for (const Match& match : match_projected(frame, search, {}, {100, 0.8, RotationCheck::kOff})) {
+  for (const Match& match : match_projected(frame, search, {}, kInWindow)) {
     associations.push_back(associate(match.feature, map.landmarks[match.tag]));
   }
   if (static_cast<int>(associations.size()) < context.config.tracker.min_motion_matches) return {};
@@ -329,7 +333,7 @@ LocalMapTracking track_local_map(const Frame& frame, const LocalMap& map, const 
     const double radius_px = view->view_cosine > kStraightView ? kStraightRadius_px : kObliqueRadius_px;
     search.push_back(make_search_point(*view, config.tracker.local_radius_px * radius_px, landmark.descriptor, i));
   }
-  for (const Match& match : match_projected(frame, search, taken, {100, 0.8, RotationCheck::kOff})) {
+  for (const Match& match : match_projected(frame, search, taken, kInWindow)) {
     const LocalLandmark& landmark = map.landmarks[match.tag];
     associations.push_back(associate(match.feature, landmark));
   }
