@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/core/datasets/openloris.hpp"
 
-#include <algorithm>
 #include <opencv2/core.hpp>
 #include <optional>
 #include <set>
@@ -51,28 +50,6 @@ std::vector<double> numbers_of(const cv::FileNode& node) {
   if (matrix.empty()) return {};
   matrix.convertTo(matrix, CV_64F);
   return matrix.reshape(1, 1).clone();
-}
-
-/// The colour camera of sensors.yaml, whose intrinsics are fx cx fy cy.
-camera::Calibration read_sensors(const fs::path& file) {
-  cv::FileStorage yaml = open_yaml(file);
-  const cv::FileNode node = yaml[kColorFrame];
-  const std::vector<double> intrinsics = numbers_of(node["intrinsics"]);
-  if (intrinsics.size() != 4) throw SourceError(file.string() + ": " + kColorFrame + " has no intrinsics fx cx fy cy");
-  geometry::CameraModel::Parameters parameters;
-  parameters.width = static_cast<int>(node["width"]);
-  parameters.height = static_cast<int>(node["height"]);
-  parameters.fx = intrinsics[0];
-  parameters.cx = intrinsics[1];
-  parameters.fy = intrinsics[2];
-  parameters.cy = intrinsics[3];
-  const std::vector<double> distortion = numbers_of(node["distortion_coefficients"]);
-  std::copy_n(distortion.begin(), std::min<std::size_t>(distortion.size(), 5), parameters.distortion.begin());
-  camera::Calibration calibration;
-  calibration.camera = geometry::CameraModel(parameters);
-  calibration.depth_scale_m = 0.001;
-  if (const double fps = static_cast<double>(node["fps"]); fps > 0) calibration.fps = fps;
-  return camera::parse_calibration(camera::to_yaml(calibration), file.string());  // checks the values
 }
 
 /// A transform of trans_matrix.yaml.
@@ -157,7 +134,7 @@ void link_folder(const fs::path& target, const fs::path& link) {
 }  // namespace
 
 void prepare_openloris(const fs::path& sequence, const fs::path& into) {
-  const camera::Calibration calibration = read_sensors(sequence / "sensors.yaml");
+  const camera::Calibration calibration = camera::read_calibration(sequence / "sensors.yaml", std::nullopt, sequence);
   const geometry::Trajectory groundtruth = of_camera(sequence);
   fs::create_directories(into);
   io::write_file(into / "calibration.yaml", camera::to_yaml(calibration));
