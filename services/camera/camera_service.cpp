@@ -68,7 +68,6 @@ int readers_of(const std::string& service) {
 }  // namespace
 
 void CameraService::add_options(CLI::App& app, std::vector<service::GivenOption>&) {
-  app.add_option("--export")->description("Write the source to a new folder in TUM's layout and end");
   app.add_flag("--preview")->description("Print what the source delivers, write a picture and end (--preview --help)");
 }
 

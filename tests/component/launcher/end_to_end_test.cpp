@@ -129,9 +129,9 @@ TEST_F(EndToEndTest, a_dense_map_a_recording_and_a_trace_change_nothing_of_the_r
 }
 
 TEST_F(EndToEndTest, a_run_that_used_less_than_half_of_its_frames_is_no_success) {
-  RtdCommand camera(fs::path(RTD_EXECUTABLE).parent_path() / "rtd-camera");
+  RtdCommand convert;
   const std::string folder = scratch_ / "frames";
-  ASSERT_EQ(camera.run({"--source", "synthetic:office?frames=12", "--export", folder}), 0) << camera.output();
+  ASSERT_EQ(convert.run({"convert", "synthetic:office?frames=12", "tum:" + folder}), 0) << convert.output();
   std::vector<fs::path> images;
   for (const auto& file : fs::directory_iterator(folder + "/rgb")) images.push_back(file.path());
   std::ranges::sort(images);

@@ -22,8 +22,9 @@ def printed(text):
         lines += [["rtd-camera", *words, "--print-config"] for words in
                   (["--set", text], ["--set", f"bus.domain={text}"], ["--profile", text], ["--config", text],
                    ["--config", file.name], ["--dds", text], ["--pace", text], ["--log-level", text])]
-        lines += [["rtd-camera", *mode, "--source", f"{scheme}{text}"]
-                  for mode in (["--preview"], ["--export", "/nonexistent/new"]) for scheme in ("", "folder:")]
+        for uri in (text, f"folder:{text}"):
+            lines += [["rtd-camera", "--preview", "--source", uri],
+                      ["rtd-recording", "convert", uri, "/nonexistent/new"]]
         lines += [["rtd", text], ["rtd", "run", "--source", text], ["rtd", "run", "--set", f"{text}=1"],
                   ["rtd-eval", "trajectory", text, text], ["rtd-recording", "info", text], ["rtd-map", "info", text],
                   ["rtd-detector", "--image", text], ["rtd-topics", "echo", "--domain", text]]
