@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/mcap/copy.hpp"
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <tuple>
@@ -13,17 +15,31 @@
 namespace rtd::mcap {
 namespace {
 
-/// The new file, and what both functions put into it in the same way.
+/// The new file. Remembers which of its channels stands for which one of the parts.
 class NewFile {
  public:
   NewFile(io::ByteSink& sink, const WriterOptions& options) : sink_(sink), options_(options) {}
 
+  void begin_part() { channel_of_.clear(); }
   void take(const StreamReader& /*part*/, const Header& header) {
     if (writer_) return;
     options_.profile = header.profile;
     options_.library = header.library;
   }
+  void take(const StreamReader& /*part*/, const Schema& schema) { id_of(schema); }
+  void take(const StreamReader& part, const Channel& channel) { this->channel(part, channel.id); }
+  void take(const StreamReader& part, const Message& message) {
+    Message renamed = message;
+    renamed.channel_id = channel(part, message.channel_id);
+    writer().write(renamed);
+  }
   void take(const StreamReader& /*part*/, const Attachment& attachment) { writer().write(attachment); }
+  void take(const StreamReader& /*part*/, const Metadata& metadata) {
+    if (metadata_.emplace(metadata.name, metadata.metadata).second) writer().write(metadata);
+  }
+  void take(const StreamReader& /*part*/, const Statistics& statistics) {
+    announced = announced.value_or(0) + statistics.message_count;
+  }
   template <class R>
   void take(const StreamReader& /*part*/, const R&) {}
 
@@ -32,66 +48,14 @@ class NewFile {
     return writer().statistics();
   }
 
- protected:
+  std::optional<std::uint64_t> announced;  ///< messages
+
+ private:
   /// Begun with the first record, so that a header can come before.
   Writer& writer() {
     if (!writer_) writer_.emplace(sink_, options_);
     return *writer_;
   }
-
- private:
-  io::ByteSink& sink_;
-  WriterOptions options_;
-  std::optional<Writer> writer_;
-};
-
-/// The records of one source as they are.
-class Recovered : public NewFile {
- public:
-  using NewFile::NewFile;
-  using NewFile::take;
-  void take(const StreamReader& /*source*/, const Schema& schema) { writer().write(schema); }
-  void take(const StreamReader& source, const Channel& channel) { define(source, channel); }
-  void take(const StreamReader& source, const Message& message) {
-    if (!defined_.contains(message.channel_id)) define(source, source.channels().at(message.channel_id));
-    writer().write(message);
-  }
-  void take(const StreamReader& /*source*/, const Metadata& metadata) { writer().write(metadata); }
-  void take(const StreamReader& /*source*/, const Statistics& statistics) { announced = statistics; }
-
-  std::optional<Statistics> announced;
-
- private:
-  void define(const StreamReader& source, Channel channel) {
-    if (!defined_.insert(channel.id).second) return;
-    const auto schema = source.schemas().find(channel.schema_id);
-    if (schema != source.schemas().end())
-      writer().write(schema->second);
-    else
-      channel.schema_id = 0;  // a file must not name a schema that it does not have
-    writer().write(channel);
-  }
-
-  std::set<ChannelId> defined_;
-};
-
-/// Remembers which of its channels stands for which one of the parts.
-class Joint : public NewFile {
- public:
-  using NewFile::NewFile;
-  using NewFile::take;
-  void begin_part() { channel_of_.clear(); }
-  void take(const StreamReader& part, const Message& message) {
-    Message renamed = message;
-    renamed.channel_id = channel(part, message.channel_id);
-    writer().write(renamed);
-  }
-  void take(const StreamReader& part, const Channel& channel) { this->channel(part, channel.id); }
-  void take(const StreamReader& /*part*/, const Metadata& metadata) {
-    if (metadata_.emplace(metadata.name, metadata.metadata).second) writer().write(metadata);
-  }
-
- private:
   ChannelId channel(const StreamReader& part, ChannelId id) {
     if (const auto known = channel_of_.find(id); known != channel_of_.end()) return known->second;
     Channel channel = part.channels().at(id);
@@ -113,6 +77,9 @@ class Joint : public NewFile {
     return known->second;
   }
 
+  io::ByteSink& sink_;
+  WriterOptions options_;
+  std::optional<Writer> writer_;
   std::map<std::tuple<std::string, std::string, std::string>, SchemaId> schemas_;
   std::map<std::tuple<std::string, SchemaId, std::string, std::map<std::string, std::string>>, ChannelId> channels_;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;  ///< name and content
@@ -120,8 +87,7 @@ class Joint : public NewFile {
 };
 
 /// Copies one source, behind others of `bytes_before`, and adds its problems to the report.
-template <class File>
-void copy(const io::ByteSource& source, File& file, const CopyOptions& options, std::uint64_t bytes_before,
+void copy(const io::ByteSource& source, NewFile& file, const CopyOptions& options, std::uint64_t bytes_before,
           CopyReport& report) {
   StreamReader reader(source, options.reader);
   Problems ignored(0);  // the streaming reader finds them, too
@@ -139,34 +105,28 @@ void copy(const io::ByteSource& source, File& file, const CopyOptions& options, 
 
 }  // namespace
 
-std::optional<std::uint64_t> RecoverReport::messages_lost() const {
+std::optional<std::uint64_t> CopyReport::messages_lost() const {
   if (!announced) return std::nullopt;
-  const std::uint64_t whole = announced->message_count;
-  return whole - std::min(whole, recovered.message_count);
+  return *announced - std::min(*announced, copied.message_count);
 }
 
-RecoverReport recover(const io::ByteSource& source, io::ByteSink& sink, const RecoverOptions& options) {
-  RecoverReport report;
-  Recovered file(sink, options.writer);
-  CopyOptions salvaging = options;
-  salvaging.reader.salvage_cut_chunk = true;
-  copy(source, file, salvaging, 0, report);
-  report.recovered = file.finish();
-  report.announced = file.announced;
-  return report;
-}
-
-JoinReport join(std::span<const io::ByteSource* const> parts, io::ByteSink& sink, const JoinOptions& options) {
-  JoinReport report;
-  Joint file(sink, options.writer);
+CopyReport join(std::span<const io::ByteSource* const> parts, io::ByteSink& sink, const CopyOptions& options) {
+  CopyReport report;
+  NewFile file(sink, options.writer);
   std::uint64_t bytes_before = 0;
   for (const io::ByteSource* const part : parts) {
     file.begin_part();
     copy(*part, file, options, bytes_before, report);
     bytes_before += part->size();
   }
-  report.joined = file.finish();
+  report.copied = file.finish();
+  report.announced = file.announced;
   return report;
+}
+
+CopyReport recover(const io::ByteSource& source, io::ByteSink& sink, CopyOptions options) {
+  options.reader.salvage_cut_chunk = true;
+  return join(std::array{&source}, sink, options);
 }
 
 }  // namespace rtd::mcap

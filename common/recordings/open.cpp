@@ -149,7 +149,7 @@ void join(const std::vector<Plain>& files, io::ByteSink& sink, Opened& opened) {
   for (const Plain& file : files) {
     parts.push_back(sources.emplace_back(std::make_unique<io::FileSource>(file.path)).get());
   }
-  const mcap::JoinReport report = mcap::join(parts, sink);
+  const mcap::CopyReport report = mcap::join(parts, sink);
   for (const mcap::Problem& problem : report.problems) {
     if (mcap::is_damage(problem)) opened.damages.push_back(mcap::to_string(problem));
   }

@@ -58,30 +58,23 @@ std::string default_output(const fs::path& input) {
 }
 
 /// The problems as text, or `summary` with them as JSON.
-template <class Report>
-void print(const Report& report, const FileOptions& options, nlohmann::json summary, const std::string& text) {
+void print(const mcap::CopyReport& report, const FileOptions& options, nlohmann::json summary, std::string text) {
+  if (const auto lost = report.messages_lost()) {
+    summary["messages_lost"] = *lost;
+    if (*lost > 0) text += ", " + std::to_string(*lost) + " of those announced are lost";
+  }
   if (!options.json) {
     for (const mcap::Problem& problem : report.problems) std::cout << to_string(problem) << '\n';
     std::cout << text << '\n';
     return;
   }
   summary.update({{"output", options.output},
+                  {"messages", report.copied.message_count},
                   {"data_lost", report.data_lost},
                   {"problem_count", report.problem_count},
                   {"problems", nlohmann::json::array()}});
   for (const mcap::Problem& problem : report.problems) summary["problems"].push_back(to_string(problem));
   std::cout << service::json_text(summary) << '\n';
-}
-
-void print(const mcap::RecoverReport& report, const FileOptions& options) {
-  const std::uint64_t messages = report.recovered.message_count;
-  nlohmann::json summary{{"input", options.input}, {"messages", messages}, {"chunks", report.recovered.chunk_count}};
-  std::string text = std::to_string(messages) + " messages recovered to " + options.output;
-  if (const auto lost = report.messages_lost()) {
-    summary["messages_lost"] = *lost;
-    text += ", " + std::to_string(*lost) + " of those announced in the file are lost";
-  }
-  print(report, options, std::move(summary), text);
 }
 
 int recover(const FileOptions& options) {
@@ -92,11 +85,12 @@ int recover(const FileOptions& options) {
   }
   io::AtomicFile sink(options.output, output_options(options));
   service::Progress progress(std::cerr, "recovering", source.size());
-  mcap::RecoverOptions recovering;
+  mcap::CopyOptions recovering;
   recovering.progress = [&](std::uint64_t bytes) { progress.reach(bytes); };
-  const mcap::RecoverReport report = mcap::recover(source, sink, recovering);
+  const mcap::CopyReport report = mcap::recover(source, sink, recovering);
   sink.commit();
-  print(report, options);
+  print(report, options, {{"input", options.input}, {"chunks", report.copied.chunk_count}},
+        std::to_string(report.copied.message_count) + " messages recovered to " + options.output);
   return report.data_lost ? service::kPartialLoss : service::kOk;
 }
 
@@ -160,13 +154,13 @@ int join(const FileOptions& options) {
   }
   io::AtomicFile sink(options.output, output_options(options));
   service::Progress progress(std::cerr, "joining", bytes);
-  mcap::JoinOptions joining;
+  mcap::CopyOptions joining;
   joining.progress = [&](std::uint64_t done) { progress.reach(done); };
-  const mcap::JoinReport report = mcap::join(sources, sink, joining);
+  const mcap::CopyReport report = mcap::join(sources, sink, joining);
   sink.commit();
-  const std::uint64_t messages = report.joined.message_count;
-  print(report, options, {{"parts", parts.size()}, {"messages", messages}},
-        std::to_string(messages) + " messages of " + std::to_string(parts.size()) + " parts in " + options.output);
+  print(report, options, {{"parts", parts.size()}},
+        std::to_string(report.copied.message_count) + " messages of " + std::to_string(parts.size()) + " parts in " +
+            options.output);
   return report.data_lost ? service::kPartialLoss : service::kOk;
 }
 

@@ -60,9 +60,9 @@ std::string try_input(const Bytes& file, bool check_crcs, std::uint64_t& sum) {
   const io::MemorySource source(file);
   sum += read_by_index(source, options);
   io::MemorySink sink;
-  RecoverOptions recovery;
+  CopyOptions recovery;
   recovery.reader = options;
-  sum += recover(source, sink, recovery).recovered.message_count;
+  sum += recover(source, sink, recovery).copied.message_count;
   const ReadBack again = stream(sink.bytes());
   for (const StoredMessage& message : again.messages) sum += touch(io::bytes_of(message.data));
   if (!again.problems.empty()) return "the recovered file has problems: " + texts(again.problems);

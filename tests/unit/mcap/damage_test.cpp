@@ -97,7 +97,7 @@ TEST_P(Damage, a_file_cut_at_any_byte_is_made_whole_again) {
   const std::vector<std::uint64_t> ends = compressed ? ends_of_messages(file) : ends_in_chunks(file);
   for (std::size_t cut = 0; cut < file.size(); ++cut) {
     io::MemorySink sink;
-    const RecoverReport report = recover(io::MemorySource(ByteView(file).first(cut)), sink);
+    const CopyReport report = recover(io::MemorySource(ByteView(file).first(cut)), sink);
     ASSERT_FALSE(report.problems.empty()) << "cut at " << cut;
     const ReadBack again = stream(sink.bytes());
     ASSERT_THAT(again.problems, IsEmpty()) << "cut at " << cut << '\n' << texts(again.problems);
@@ -167,8 +167,8 @@ TEST_P(BitFlips, each_single_one_is_reported_and_costs_one_chunk_at_most) {
   }
 }
 
-/// Where a record's length is damaged a reader looks for the next record, which may be one inside a chunk: no CRC covers
-/// that one alone. It happens to two or three files in 10,000, and the problems say that messages may be wrong.
+/// Where a record's length is damaged a reader looks for the next record, which may be one inside a chunk: no CRC
+/// covers that one alone. It happens to two or three files in 10,000, and the problems say that messages may be wrong.
 TEST_P(BitFlips, several_at_once_are_reported_too) {
   const Bytes whole = file();
   int doubtful = 0;
@@ -197,7 +197,7 @@ TEST(Recover, keeps_the_whole_messages_of_a_cut_chunk_and_says_that_no_checksum_
   const Bytes file = file_of(messages);  // one chunk
   const std::uint64_t end_of_seventh = ends_in_chunks(file)[6];
   io::MemorySink sink;
-  const RecoverReport report = recover(io::MemorySource(ByteView(file).first(end_of_seventh + 20)), sink);
+  const CopyReport report = recover(io::MemorySource(ByteView(file).first(end_of_seventh + 20)), sink);
   EXPECT_TRUE(report.data_lost);
   ASSERT_EQ(report.problems.size(), 1U) << texts(report.problems);
   EXPECT_EQ(report.problems[0].kind, ProblemKind::kTruncated);
@@ -215,11 +215,11 @@ TEST(Recover, reports_the_loss_and_keeps_the_rest) {
   Bytes file = file_of(messages, options);
   file[400] ^= std::byte{1};  // in the first chunk: the channels come from the summary then
   io::MemorySink sink;
-  const RecoverReport report = recover(io::MemorySource(file), sink);
+  const CopyReport report = recover(io::MemorySource(file), sink);
   EXPECT_TRUE(report.data_lost);
   ASSERT_TRUE(report.announced);
-  EXPECT_EQ(*report.messages_lost() + report.recovered.message_count, messages.size());
-  EXPECT_GT(report.recovered.message_count, 30U);
+  EXPECT_EQ(*report.messages_lost() + report.copied.message_count, messages.size());
+  EXPECT_GT(report.copied.message_count, 30U);
   const ReadBack again = stream(sink.bytes());
   EXPECT_THAT(again.problems, IsEmpty()) << texts(again.problems);
   EXPECT_TRUE(is_part_of(again.messages, messages));

@@ -9,7 +9,7 @@
 namespace rtd::mcap {
 namespace {
 
-Bytes joined(const std::vector<Bytes>& parts, JoinReport& report) {
+Bytes joined(const std::vector<Bytes>& parts, CopyReport& report) {
   std::vector<io::MemorySource> sources;
   for (const Bytes& part : parts) sources.emplace_back(part);
   std::vector<const io::ByteSource*> pointers;
@@ -37,7 +37,7 @@ TEST(Join, gives_every_message_of_all_parts_in_their_order) {
   const std::vector<StoredMessage> all = sample_messages(100, 300);
   std::vector<StoredMessage> last;
   for (std::uint32_t i = 0; i < 10; ++i) last.push_back({"/pose", i, 5000 + i, 5000 + i, "some bytes"});
-  JoinReport report;
+  CopyReport report;
   const Bytes file = joined({file_of({all.begin(), all.begin() + 60}), file_of({all.begin() + 60, all.end()}),
                              file_with_other_ids(last), file_with_other_ids({})},
                             report);
@@ -48,10 +48,10 @@ TEST(Join, gives_every_message_of_all_parts_in_their_order) {
   EXPECT_TRUE(back.messages == expected);
   EXPECT_EQ(by_index(file).messages.size(), expected.size());
   EXPECT_FALSE(report.data_lost);
-  EXPECT_EQ(report.joined.message_count, 110U);
-  EXPECT_EQ(report.joined.channel_count, 3U) << "/pose, /frame and /log once each";
-  EXPECT_EQ(report.joined.schema_count, 1U);
-  EXPECT_EQ(report.joined.metadata_count, 1U);
+  EXPECT_EQ(report.copied.message_count, 110U);
+  EXPECT_EQ(report.copied.channel_count, 3U) << "/pose, /frame and /log once each";
+  EXPECT_EQ(report.copied.schema_count, 1U);
+  EXPECT_EQ(report.copied.metadata_count, 1U);
 }
 
 TEST(Join, takes_the_intact_part_of_a_damaged_file_and_reports_it) {
@@ -60,7 +60,7 @@ TEST(Join, takes_the_intact_part_of_a_damaged_file_and_reports_it) {
   small.chunk_size = 2000;
   Bytes cut = file_of({all.begin(), all.begin() + 50}, small);
   cut.resize(cut.size() / 2);
-  JoinReport report;
+  CopyReport report;
   const Bytes file = joined({cut, file_of({all.begin() + 50, all.end()})}, report);
   EXPECT_TRUE(report.data_lost);
   EXPECT_GT(report.problem_count, 0U);
@@ -72,7 +72,7 @@ TEST(Join, takes_the_intact_part_of_a_damaged_file_and_reports_it) {
 }
 
 TEST(Join, of_nothing_is_an_empty_file) {
-  JoinReport report;
+  CopyReport report;
   EXPECT_TRUE(stream(joined({}, report)).messages.empty());
 }
 
