@@ -7,7 +7,8 @@
 
 Compared with tests/identity/golden: `--help` and `--print-config` of every executable, the keys of run.json, the
 description of a recording (`rtd info --json`), and the metrics of the viewer. The messages of its page are compared by
-a unit test. A difference is printed as diff(1) prints it.
+a unit test. A difference is printed as diff(1) prints it. What many texts have in common is recorded once, in
+golden/shared, and a line "@NAME" stands for it. `rtd X --help` has to equal `rtd-X --help`.
 
 Exit codes: 0 all equal, 1 something differs.
 """
@@ -30,6 +31,13 @@ GOLDEN = HERE / "golden"
 COMMANDS = ("run", "demo", "doctor", "ablate", "benchmark", "eval", "report", "eval-detector", "convert", "info", "diff",
             "map", "export", "topics", "call", "keystore", "atlas", "link", "record", "replay", "viewer")
 SERVICES = ("camera", "detector", "filter", "slam", "dense", "record", "replay", "link", "atlas", "viewer")
+SHARED = {  # name: the text that has it, its first line, how its last line begins
+    "options": ("help rtd-camera", "  -h,--help ", "  --print-config "),
+    "bus_options": ("help rtd-camera", "Network:", "                              ROS_SECURITY_KEYSTORE"),
+    "wide_bus_options": ("help rtd call", "Network:", "  --keystore "),
+    "bus": ("config rtd-camera", "bus:", "    enclave: "),
+    "small_bus": ("config rtd-slam", "bus:", "    enclave: "),
+}
 
 
 class Texts:
@@ -72,15 +80,21 @@ class Texts:
 
     @staticmethod
     def metrics(port: int) -> set:
-        """Types and names with labels, without the values; what a busy host adds is left out, and so are images, which a
-        viewer without a page reads now and then."""
+        """Names with type, help and labels, without the values; what a busy host adds is left out, and so are images,
+        which a viewer without a page reads now and then."""
         try:
             with urllib.request.urlopen(f"http://127.0.0.1:{port}/metrics", timeout=2) as answer:
                 lines = answer.read().decode().splitlines()
         except (urllib.error.URLError, OSError):
             return set()
-        names = {line if line.startswith("#") else line.rsplit(" ", 1)[0] for line in lines}
-        names = {re.sub(r'(host|pid|version|step)="[^"]*"', r'\1="..."', name) for name in names}
+        about, names = {}, set()
+        for line in lines:
+            if line.startswith("# "):  # HELP, then TYPE
+                _, _, name, text = line.split(" ", 3)
+                about[name] = f"{about.get(name, '')} {text}"
+            else:
+                labelled = re.sub(r'(host|pid|version|step)="[^"]*"', r'\1="..."', line.rsplit(" ", 1)[0])
+                names.add(labelled + about[labelled.split("{")[0]])
         return {name for name in names if not re.search(r"dropped|lost|late|skipped|peer_|load|image_raw", name)}
 
 
@@ -98,7 +112,9 @@ def collect(texts: Texts, with_help: bool) -> dict:
     for command in COMMANDS:
         found[f"help rtd {command}"] = texts.output("rtd", command, "--help")
     for service in SERVICES:
-        found[f"help rtd-{service}"] = texts.output(f"rtd-{service}", "--help")
+        found[f"help rtd-{service}"] = text = texts.output(f"rtd-{service}", "--help")
+        if found.pop(f"help rtd {service}", text) != text:
+            sys.exit(f"rtd {service} --help and rtd-{service} --help differ")
     if not with_help:
         print(f"{len(found)} texts of --help are there and not compared: another CLI11 lays them out differently")
         found.clear()
@@ -111,11 +127,39 @@ def collect(texts: Texts, with_help: bool) -> dict:
     return found
 
 
+def shared_blocks(found: dict) -> dict:
+    blocks = {}
+    for name, (text, first, last) in SHARED.items():
+        lines = found[text].splitlines(True)
+        begin = next(i for i, line in enumerate(lines) if line.startswith(first))
+        end = next(i for i, line in enumerate(lines) if i >= begin and line.startswith(last))
+        blocks[name] = "".join(lines[begin:end + 1])
+    return blocks
+
+
+def record(found: dict) -> None:
+    (GOLDEN / "shared").mkdir(parents=True, exist_ok=True)
+    blocks = shared_blocks(found)
+    for name, text in found.items():
+        for block, shared in blocks.items():
+            text = ("\n" + text).replace("\n" + shared, f"\n@{block}\n")[1:]
+        (GOLDEN / (name.replace(" ", "_") + ".txt")).write_text(text)
+    for block, shared in blocks.items():
+        (GOLDEN / "shared" / f"{block}.txt").write_text(shared)
+
+
+def recorded_text(file: pathlib.Path) -> str:
+    if not file.exists():
+        return ""
+    return re.sub(r"^@(\w+)\n", lambda found: (GOLDEN / "shared" / f"{found[1]}.txt").read_text(), file.read_text(),
+                  flags=re.MULTILINE)
+
+
 def compare(found: dict) -> int:
     different = 0
     for name, text in found.items():
         file = GOLDEN / (name.replace(" ", "_") + ".txt")
-        recorded = file.read_text() if file.exists() else ""
+        recorded = recorded_text(file)
         if text == recorded:
             continue
         different += 1
@@ -135,9 +179,7 @@ def main() -> int:
                         arguments.cli11.startswith("2.1"))
     if not arguments.record:
         return compare(found)
-    GOLDEN.mkdir(exist_ok=True)
-    for name, text in found.items():
-        (GOLDEN / (name.replace(" ", "_") + ".txt")).write_text(text)
+    record(found)
     print(f"recorded {len(found)} texts: {GOLDEN}")
     return 0
 
