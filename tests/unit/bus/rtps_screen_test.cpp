@@ -182,32 +182,32 @@ TEST(RtpsFragmentsTest, of_discovery_are_of_small_samples) {
   EXPECT_FALSE(whole(fragment_of(1, 1, kOfVendor))) << "16 MiB";
 }
 
-TEST(SequenceGuardTest, accepts_steps_and_repeated_far_numbers) {
-  constexpr std::uint64_t kFar = SequenceGuard::kFar, kDays = 40 * kFar;
+TEST(NumberGuardTest, accepts_steps_and_repeated_far_numbers) {
+  constexpr std::uint64_t kFar = NumberGuard::kFar, kDays = 40 * kFar;
   const WriterGuid writer{std::byte{1}}, other{std::byte{2}};
-  SequenceGuard guard;
+  NumberGuard guard;
   EXPECT_TRUE(guard.plausible(writer, 1));
   EXPECT_TRUE(guard.plausible(writer, kFar));
   EXPECT_TRUE(guard.plausible(writer, 2 * kFar));
   EXPECT_FALSE(guard.plausible(other, 2 * kFar)) << "each by itself";
   EXPECT_FALSE(guard.plausible(writer, ~std::uint64_t{0}));
-  for (int i = 1; i < SequenceGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + 30));
+  for (int i = 1; i < NumberGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + 30));
   EXPECT_TRUE(guard.plausible(writer, 17)) << "a right one in between";
-  for (std::uint64_t i = 1; i < SequenceGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + i));
+  for (std::uint64_t i = 1; i < NumberGuard::kMessages; ++i) EXPECT_FALSE(guard.plausible(writer, kDays + i));
   EXPECT_TRUE(guard.plausible(writer, kDays)) << "it has been writing for days";
   EXPECT_TRUE(guard.plausible(writer, kDays + kFar));
   EXPECT_TRUE(guard.plausible(writer, 18)) << "old ones are asked for again";
 }
 
-TEST(SequenceGuardTest, remembers_no_more_writers_than_it_says) {
-  SequenceGuard guard;
+TEST(NumberGuardTest, remembers_no_more_writers_than_it_says) {
+  NumberGuard guard;
   WriterGuid writer{};
-  for (std::size_t i = 0; i < 3 * SequenceGuard::kWriters; ++i) {
+  for (std::size_t i = 0; i < 3 * NumberGuard::kWriters; ++i) {
     writer[0] = static_cast<std::byte>(i);
     writer[1] = static_cast<std::byte>(i >> 8);
-    EXPECT_TRUE(guard.plausible(writer, SequenceGuard::kFar));
+    EXPECT_TRUE(guard.plausible(writer, NumberGuard::kFar));
   }
-  EXPECT_FALSE(guard.plausible(WriterGuid{}, 2 * SequenceGuard::kFar + 1)) << "the first one was forgotten";
+  EXPECT_FALSE(guard.plausible(WriterGuid{}, 2 * NumberGuard::kFar + 1)) << "the first one was forgotten";
 }
 
 TEST(RtpsScreenTest, refuses_numbers_that_would_be_counted_to_for_hours) {

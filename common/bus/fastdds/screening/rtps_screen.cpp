@@ -192,7 +192,7 @@ RtpsMessage read_rtps_message(std::span<const std::byte> datagram) {
   return message;
 }
 
-bool SequenceGuard::plausible(const WriterGuid& writer, std::uint64_t number) {
+bool NumberGuard::plausible(const WriterGuid& writer, std::uint64_t number) {
   constexpr std::uint64_t kLargest = std::numeric_limits<std::int64_t>::max() - kFar;
   if (number > kLargest) return false;
   if (known_.size() >= kWriters && !known_.contains(writer))

@@ -53,7 +53,7 @@ std::span<const std::byte> without_last(std::span<const std::byte> message, std:
 
 /// Whether a writer may have come to a sequence number: none is far beyond all that it has named so far, unless it goes
 /// on naming such numbers and no others, as one does that has been writing for days before it is first matched.
-class SequenceGuard {
+class NumberGuard {
  public:
   /// The largest of one message.
   bool plausible(const WriterGuid& writer, std::uint64_t number);
@@ -77,7 +77,7 @@ class RtpsScreen {
   bool passes(std::span<const std::byte> datagram);
 
  private:
-  SequenceGuard guard_;
+  NumberGuard guard_;
 };
 
 }  // namespace rtd::bus
