@@ -2,41 +2,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <functional>
 #include <random>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "common/mcap/codec.hpp"
-#include "tests/fuzz/mcap/allocation_watch.hpp"
+#include "common/io/bytes.hpp"
 
-namespace rtd::testing {
+namespace rtd::fuzz {
 
-/// The main loop of a fuzz driver, `DRIVER [INPUTS [SEED]]`. `make` makes an input of a random generator; `test` says
-/// why an input is a failure, empty when it is none: the first one is written to `failed_path` and ends the loop with
-/// exit code 1; `all_well` says what it has counted.
-template <class Make, class Test, class AllWell>
-int run_fuzz(int argc, char** argv, const char* failed_path, const Make& make, const Test& test,
-             const AllWell& all_well) {
-  const std::uint64_t inputs = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 5000;
-  const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
-  std::mt19937_64 random(seed);
-  watch_allocations();
-  for (std::uint64_t i = 0; i < inputs; ++i) {
-    const io::Bytes input = make(random);
-    peak_allocation();
-    const std::string failure = test(input, random);
-    if (failure.empty()) continue;
-    std::ofstream(failed_path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
-    std::fprintf(stderr, "input %llu of seed %llu: %s\n", static_cast<unsigned long long>(i),
-                 static_cast<unsigned long long>(seed), failure.c_str());
-    return 1;
-  }
-  std::printf("%llu inputs, all well (%s)\n", static_cast<unsigned long long>(inputs), all_well().c_str());
-  return 0;
-}
+using Random = std::mt19937_64;
 
-}  // namespace rtd::testing
+io::Bytes bytes_of(std::string_view text);
+std::string text_of(const io::Bytes& bytes);
+std::string content_of(const std::filesystem::path& file);
+
+/// A changed copy: bits, bytes, integers that programs get wrong, blocks moved, repeated or cut, and `other` spliced
+/// in.
+io::Bytes mutate(const io::Bytes& file, const io::Bytes& other, Random& random);
+/// One of the files, changed.
+io::Bytes mutate_one(const std::vector<io::Bytes>& files, Random& random);
+/// Changes bytes, or puts words of a language into its texts: between lines, into them, or in place of something.
+io::Bytes mutate_text(const std::vector<std::string>& texts, const std::vector<std::string>& words, Random& random);
+
+/// A fuzz driver, `DRIVER [INPUTS [SEED]]`. An input is a failure when `test` says why or throws, when it makes the
+/// process hold more memory than allowed (in builds with AddressSanitizer) or takes longer.
+struct FuzzDriver {
+  const char* failed_path;  ///< where the first failure is written
+  std::function<io::Bytes(Random&)> make;
+  std::function<std::string(const io::Bytes&, Random&)> test;
+  std::function<std::string()> counted;  ///< what is said at the end
+  std::size_t max_allocated = 64 << 20, max_allocated_per_byte = 0;
+  double max_cpu_s = 0;  ///< 0: not measured
+};
+
+/// Exit code 1 and the input in `failed_path` at the first failure.
+int run_fuzz(int argc, char** argv, const FuzzDriver& driver);
+
+/// The input of a reader of files, removed at the end.
+class FuzzFile {
+ public:
+  explicit FuzzFile(const std::string& extension);
+  ~FuzzFile();
+  FuzzFile(const FuzzFile&) = delete;
+  FuzzFile& operator=(const FuzzFile&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  void write(const io::Bytes& bytes) const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace rtd::fuzz

@@ -1,22 +1,15 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// Feeds changed OctoMap files to the reader: fuzz_octomap [inputs] [seed]. What must hold for every input: no crash,
-/// no sanitizer report, bounded memory and time, no exception but OctomapError; what is read is written and read again
-/// as the same map. Exit code 1 and the input in fuzz_octomap_failed.bt otherwise. The preset asan-ubsan gives it its
-/// teeth.
-#include <ctime>
+/// Changed OctoMap files: no exception but OctomapError; what is read is written and read again as the same map.
 #include <sstream>
 
 #include "common/occupancy/octomap_file.hpp"
-#include "tests/fuzz/files/text_mutation.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 
 namespace rtd::occupancy {
 namespace {
 
-constexpr std::size_t kMaxAllocated = std::size_t{300} << 20;  // 200 million cells, and 48 nodes a byte of the file
-constexpr std::size_t kFewCells = 20'000;                      // liboctomap takes long for more
-constexpr double kMost_s = 20;
+constexpr std::size_t kFewCells = 20'000;  // liboctomap takes long for more
 
 std::string write(const Volume& volume) {
   std::ostringstream out;
@@ -29,8 +22,7 @@ std::vector<io::Bytes> seeds() {
   for (int i = 0; i < 16 * 16 * 16; ++i) room.cells.set({i % 16, i / 16 % 16, i / 256}, Space::kFree);
   for (int i = 0; i < 16 * 16; ++i) room.cells.set({16, i % 16, i / 16}, Space::kOccupied);
   for (int i = 0; i < 40; ++i) scattered.cells.set({i * 37 - 700, i * i - 300, i % 5}, Space::kOccupied);
-  return {rtd::testing::bytes_of(write(room)), rtd::testing::bytes_of(write(scattered)),
-          rtd::testing::bytes_of(write({}))};
+  return {fuzz::bytes_of(write(room)), fuzz::bytes_of(write(scattered)), fuzz::bytes_of(write({}))};
 }
 
 std::string header(const std::string& size, const std::string& cell_m) {
@@ -38,13 +30,13 @@ std::string header(const std::string& size, const std::string& cell_m) {
 }
 
 /// A few random nodes behind a good header: large cells, deep branches.
-io::Bytes random_nodes(std::mt19937_64& random) {
+io::Bytes random_nodes(fuzz::Random& random) {
   const char* sizes[] = {"9", "0", "-1", "1e300", "nan", "18446744073709551616"};
   const char* cells[] = {"0.05", "1e-3", "100", "0", "nan", "1e300", "-1"};
   std::string file = header(sizes[random() % 6], cells[random() % 4 == 0 ? random() % 7 : 0]);
   for (std::uint64_t bytes = random() % 200; bytes > 0; --bytes)
     file += static_cast<char>(random() % 3 == 0 ? 0xFF : random() % 2 == 0 ? 0 : random());
-  return rtd::testing::bytes_of(file);
+  return fuzz::bytes_of(file);
 }
 
 std::size_t count(const Volume& volume) {
@@ -63,18 +55,14 @@ std::string compare_written(const Volume& volume) {
 }
 
 std::string try_input(const io::Bytes& input, std::uint64_t& maps) {
-  const std::clock_t begin = std::clock();
   try {
-    std::istringstream in(rtd::testing::text_of(input));
+    std::istringstream in(fuzz::text_of(input));
     const Volume volume = read_octomap(in);
     ++maps;
     if (volume.cells.blocks() < kFewCells / 64 && count(volume) < kFewCells)
       if (std::string why = compare_written(volume); !why.empty()) return why;
   } catch (const OctomapError&) {
   }
-  if (static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC > kMost_s) return "it takes too long";
-  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
-    return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
 
@@ -85,12 +73,15 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = occupancy::seeds();
   std::uint64_t maps = 0;
-  return rtd::testing::run_fuzz(
-      argc, argv, "fuzz_octomap_failed.bt",
-      [&](std::mt19937_64& random) {
-        if (random() % 4 == 0) return occupancy::random_nodes(random);
-        return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);
-      },
-      [&](const io::Bytes& input, std::mt19937_64&) { return occupancy::try_input(input, maps); },
-      [&] { return std::to_string(maps) + " of them maps"; });
+  return fuzz::run_fuzz(
+      argc, argv,
+      {.failed_path = "fuzz_octomap_failed.bt",
+       .make =
+           [&](fuzz::Random& random) {
+             return random() % 4 == 0 ? occupancy::random_nodes(random) : fuzz::mutate_one(files, random);
+           },
+       .test = [&](const io::Bytes& input, fuzz::Random&) { return occupancy::try_input(input, maps); },
+       .counted = [&] { return std::to_string(maps) + " of them maps"; },
+       .max_allocated = std::size_t{300} << 20,  // 200 million cells, and 48 nodes a byte of the file
+       .max_cpu_s = 20});
 }

@@ -1,12 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// Feeds changed lists of a TUM folder to their readers: fuzz_tum [inputs] [seed]. The input is rgb.txt, depth.txt and
-/// groundtruth.txt, or associations.txt, with NUL between them. What must hold for every input: no crash, no sanitizer
-/// report, bounded memory, no exception but SourceError and TrajectoryError; colour stamps of pairs rise, and poses are
-/// rigid and in order. Exit code 1 and the input in fuzz_tum_failed.txt otherwise. The preset asan-ubsan gives it its
-/// teeth.
-#include <unistd.h>
-
+/// Changed lists of a TUM folder: rgb.txt, depth.txt and groundtruth.txt, or associations.txt, with NUL between them.
+/// No exception but SourceError and TrajectoryError; colour stamps of pairs rise, and poses are rigid and in order.
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 
@@ -15,13 +11,10 @@
 #include "common/geometry/pose_list.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"
-#include "tests/fuzz/files/text_mutation.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
 
 namespace rtd::camera {
 namespace {
-
-constexpr std::size_t kMaxAllocated = 64 << 20;
 
 struct Counted {
   std::uint64_t pairs = 0, poses = 0;
@@ -74,24 +67,15 @@ std::vector<std::string> words() {
 /// The folder that the readers are given.
 class Folder {
  public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("rtd_fuzz_tum_" + std::to_string(getpid()))) {
-    std::filesystem::create_directory(path_);
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  void fill(const std::string& input) {
+  Folder() { std::filesystem::create_directory(path()); }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  void fill(const std::string& input) const {
     std::vector<std::string> parts(1);
     for (const char letter : input) {
       if (letter != '\0') parts.back() += letter;
       if (letter == '\0' && parts.size() < 3) parts.emplace_back();
     }
-    std::filesystem::remove(path_ / "associations.txt");
+    std::filesystem::remove(path() / "associations.txt");
     if (parts.size() == 1) return put("associations.txt", parts[0]);
     put("rgb.txt", parts[0]);
     put("depth.txt", parts[1]);
@@ -99,8 +83,8 @@ class Folder {
   }
 
  private:
-  void put(const char* name, const std::string& text) { std::ofstream(path_ / name, std::ios::binary) << text; }
-  std::filesystem::path path_;
+  void put(const char* name, const std::string& text) const { std::ofstream(path() / name, std::ios::binary) << text; }
+  fuzz::FuzzFile folder_{"_tum"};
 };
 
 std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {
@@ -122,8 +106,8 @@ std::string check_poses(const std::filesystem::path& file, Counted& counted) {
   return "";
 }
 
-std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) {
-  folder.fill(rtd::testing::text_of(input));
+std::string try_input(const io::Bytes& input, const Folder& folder, Counted& counted) {
+  folder.fill(fuzz::text_of(input));
   std::string failure;
   try {
     failure = check_pairs(folder.path(), counted);
@@ -133,10 +117,7 @@ std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) 
     if (failure.empty()) failure = check_poses(folder.path() / "groundtruth.txt", counted);
   } catch (const geometry::TrajectoryError&) {
   }
-  if (!failure.empty()) return failure;
-  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
-    return "it made the reader hold " + std::to_string(peak) + " bytes";
-  return "";
+  return failure;
 }
 
 }  // namespace
@@ -145,11 +126,12 @@ std::string try_input(const io::Bytes& input, Folder& folder, Counted& counted) 
 int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<std::string> texts = camera::seeds(), all_words = camera::words();
-  camera::Folder folder;
+  const camera::Folder folder;
   camera::Counted counted;
-  return rtd::testing::run_fuzz(
-      argc, argv, "fuzz_tum_failed.txt",
-      [&](std::mt19937_64& random) { return rtd::testing::mutate_text(texts, all_words, random); },
-      [&](const io::Bytes& input, std::mt19937_64&) { return camera::try_input(input, folder, counted); },
-      [&] { return std::to_string(counted.pairs) + " pairs, " + std::to_string(counted.poses) + " poses"; });
+  return fuzz::run_fuzz(
+      argc, argv,
+      {.failed_path = "fuzz_tum_failed.txt",
+       .make = [&](fuzz::Random& random) { return fuzz::mutate_text(texts, all_words, random); },
+       .test = [&](const io::Bytes& input, fuzz::Random&) { return camera::try_input(input, folder, counted); },
+       .counted = [&] { return fmt::format("{} pairs, {} poses", counted.pairs, counted.poses); }});
 }

@@ -1,22 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// Feeds changed messages of every type to the edge of the bus: fuzz_bus_messages [inputs] [seed]. What must hold for
-/// every input: no crash, no sanitizer report, no exception but WireError, bounded memory; and what passes keeps its
-/// promises: all that its sizes and offsets name is there. Exit code 1 and the input in fuzz_bus_messages_failed.bin
-/// otherwise. The preset asan-ubsan gives it its teeth.
+/// Changed messages of every type at the edge of the bus: no exception but WireError; what passes keeps its promises:
+/// all that its sizes and offsets name is there.
 #include <algorithm>
 #include <functional>
 
 #include "common/bus/message_cdr.hpp"
 #include "common/bus/message_screen.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
-#include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/unit/bus/message_walk.hpp"
 
 namespace rtd::bus {
 namespace {
-
-constexpr std::size_t kMaxAllocated = 64 << 20;
 
 std::uint64_t touched = 0;  ///< so that nothing below is left out
 
@@ -79,13 +74,13 @@ std::vector<Type> all_types() {
 }
 
 /// The place of the type, then its changed message. Large messages change in their first bytes, where their sizes are.
-io::Bytes make(const std::vector<Type>& types, std::mt19937_64& random) {
+io::Bytes make(const std::vector<Type>& types, fuzz::Random& random) {
   constexpr std::size_t kHead = 512;
   const std::size_t place = random() % types.size();
   const io::Bytes& seed = types[place].seed;
   const io::Bytes head(seed.begin(), seed.begin() + static_cast<std::ptrdiff_t>(std::min(kHead, seed.size())));
   const bool large = seed.size() > kHead;
-  io::Bytes changed = random() % 16 == 0 ? head : mcap::mutate(head, head, random);
+  io::Bytes changed = random() % 16 == 0 ? head : fuzz::mutate(head, head, random);
   if (large) changed.resize(kHead);
   io::Bytes input(1, static_cast<std::byte>(place));
   input.insert(input.end(), changed.begin(), changed.end());
@@ -100,12 +95,14 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<bus::Type> types = bus::all_types();
   std::uint64_t passed = 0;
-  return rtd::testing::run_fuzz(
-      argc, argv, "fuzz_bus_messages_failed.bin", [&](std::mt19937_64& random) { return bus::make(types, random); },
-      [&](const io::Bytes& input, std::mt19937_64&) -> std::string {
-        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(input.data());
-        passed += types[bytes[0]].passes({bytes + 1, input.size() - 1});
-        return rtd::testing::peak_allocation() > bus::kMaxAllocated ? "too much memory" : "";
-      },
-      [&] { return std::to_string(passed) + " passed, " + std::to_string(bus::touched) + " touched"; });
+  return fuzz::run_fuzz(
+      argc, argv,
+      {.failed_path = "fuzz_bus_messages_failed.bin",
+       .make = [&](fuzz::Random& random) { return bus::make(types, random); },
+       .test = [&](const io::Bytes& input, fuzz::Random&) -> std::string {
+         const auto* const bytes = reinterpret_cast<const std::uint8_t*>(input.data());
+         passed += types[bytes[0]].passes({bytes + 1, input.size() - 1});
+         return "";
+       },
+       .counted = [&] { return std::to_string(passed) + " passed, " + std::to_string(bus::touched) + " touched"; }});
 }

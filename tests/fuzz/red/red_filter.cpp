@@ -5,7 +5,6 @@
 /// no crash, no sanitizer report, no exception, no call of a second, bounded memory (red_watch.hpp), and what the
 /// filter would publish passes the edge of the next service. The preset asan-ubsan gives it its teeth.
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "common/msg/transform_eigen.hpp"

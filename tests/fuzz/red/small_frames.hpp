@@ -3,7 +3,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <memory>
 
 #include "common/geometry/se3.hpp"
 #include "common/msg/rgbd_frame.hpp"

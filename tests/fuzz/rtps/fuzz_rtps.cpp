@@ -4,23 +4,165 @@
 // Malformed RTPS datagrams at each service of a real run: what the services say to each other is captured, changed and
 // sent to them again; and well-formed RTPS with malformed samples. RTD_FUZZ_PACKETS: how many at each service and on
 // each topic (default 300); RTD_FUZZ_SEED; RTD_FUZZ_SERVICES: at whom only, e.g. detector,record,launcher.
-#include <gmock/gmock.h>
 
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
+#include <set>
 #include <sstream>
+#include <string>
+#include <thread>
+#include <unordered_map>
+#include <vector>
 
 #include "common/bus/backend.hpp"
 #include "common/bus/fastdds/screening/rtps_screen.hpp"
 #include "common/bus/raw_bus.hpp"
-#include "tests/fuzz/mcap/mutation.hpp"
-#include "tests/fuzz/rtps/datagram_seeds.hpp"
+#include "tests/fuzz/fuzz_loop.hpp"
+#include "tests/fuzz/rtps/rtps_datagram.hpp"
 #include "tests/fuzz/rtps/service_run.hpp"
-#include "tests/fuzz/rtps/udp_target.hpp"
+#include "tests/support/loopback_capture.hpp"
 #include "tests/support/test_domain.hpp"
 
 namespace rtd::fuzz {
 namespace {
+
+/// Different RTPS datagrams to the ports of a DDS domain in the next while, at most `count` and few of a kind;
+/// fragments of IP are left out.
+std::vector<Bytes> datagram_seeds(test_support::LoopbackCapture& capture, std::uint32_t domain,
+                                  std::chrono::milliseconds duration, std::size_t count) {
+  constexpr std::uint32_t kPortBase = 7400, kPortsOfDomain = 250;
+  constexpr std::size_t kHeader = 20;
+  const std::uint32_t first_port = kPortBase + kPortsOfDomain * domain;
+  constexpr int kAlike = 40;  // else nearly all were fragments of images
+  std::unordered_map<std::string, Bytes> different;
+  std::unordered_map<std::string, int> of_kind;
+  const auto until = std::chrono::steady_clock::now() + duration;
+  while (std::chrono::steady_clock::now() < until && different.size() < count) {
+    auto packet = capture.next(std::chrono::milliseconds(50));
+    if (!packet || packet->fragment || packet->payload.size() < kHeader) continue;
+    const bool ours = packet->port >= first_port && packet->port < first_port + kPortsOfDomain;
+    const auto* const begin = reinterpret_cast<const char*>(packet->payload.data());
+    if (!ours || std::memcmp(begin, "RTPS", 4) != 0) continue;
+    if (++of_kind[kind_of(packet->payload)] > kAlike) continue;
+    different.try_emplace(std::string(begin, packet->payload.size()), std::move(packet->payload));
+  }
+  std::vector<Bytes> datagrams;
+  for (auto& [text, bytes] : different) datagrams.push_back(std::move(bytes));
+  return datagrams;
+}
+
+/// The UDP ports of a process, and a socket to send there over loopback no faster than it reads.
+class UdpTarget {
+ public:
+  /// Ports from `first` to `last` that the process has bound.
+  UdpTarget(pid_t process, std::uint32_t first, std::uint32_t last);
+  ~UdpTarget();
+  UdpTarget(const UdpTarget&) = delete;
+  UdpTarget& operator=(const UdpTarget&) = delete;
+
+  const std::vector<std::uint16_t>& ports() const { return ports_; }
+  void send(const Bytes& datagram, std::uint16_t port) const;
+  /// Waits until its sockets have been read empty, at most a while. False when they are not or the process is gone.
+  bool wait_until_read() const;
+  /// Datagrams that found no room in its sockets so far.
+  std::uint64_t dropped() const;
+
+ private:
+  std::uint64_t drops_of_ports() const;
+
+  const pid_t process_;
+  std::uint64_t drops_before_ = 0;
+  std::vector<std::uint16_t> ports_;
+  int socket_;
+};
+
+namespace fs = std::filesystem;
+
+struct UdpSocket {
+  std::uint32_t port = 0;
+  unsigned long queued_bytes = 0, inode = 0, drops = 0;
+};
+
+std::vector<UdpSocket> udp_sockets() {
+  std::vector<UdpSocket> sockets;
+  std::ifstream table("/proc/net/udp");
+  for (std::string line; std::getline(table, line);) {
+    UdpSocket socket;
+    unsigned long sent = 0;
+    if (std::sscanf(line.c_str(), " %*d: %*x:%x %*x:%*x %*x %lx:%lx %*x:%*x %*x %*u %*d %lu %*d %*x %lu", &socket.port,
+                    &sent, &socket.queued_bytes, &socket.inode, &socket.drops) == 5)
+      sockets.push_back(socket);
+  }
+  return sockets;
+}
+
+std::set<std::string> open_files(pid_t process) {
+  std::set<std::string> files;
+  std::error_code error;
+  for (fs::directory_iterator file("/proc/" + std::to_string(process) + "/fd", error), end; !error && file != end;
+       file.increment(error))
+    files.insert(fs::read_symlink(file->path(), error).string());
+  return files;
+}
+
+UdpTarget::UdpTarget(pid_t process, std::uint32_t first, std::uint32_t last)
+    : process_(process), socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+  const std::set<std::string> files = open_files(process);
+  for (const UdpSocket& socket : udp_sockets()) {
+    const bool own = files.contains("socket:[" + std::to_string(socket.inode) + "]");
+    if (own && socket.port >= first && socket.port <= last) ports_.push_back(static_cast<std::uint16_t>(socket.port));
+  }
+  drops_before_ = drops_of_ports();
+}
+
+UdpTarget::~UdpTarget() {
+  ::close(socket_);
+}
+
+void UdpTarget::send(const Bytes& datagram, std::uint16_t port) const {
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(port);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::sendto(socket_, datagram.data(), datagram.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof to);
+}
+
+bool UdpTarget::wait_until_read() const {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (std::chrono::steady_clock::now() < give_up && ::kill(process_, 0) == 0) {
+    unsigned long waiting = 0;
+    for (const UdpSocket& socket : udp_sockets())
+      if (std::find(ports_.begin(), ports_.end(), socket.port) != ports_.end()) waiting += socket.queued_bytes;
+    if (waiting < 100'000) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return false;
+}
+
+std::uint64_t UdpTarget::drops_of_ports() const {
+  std::uint64_t drops = 0;
+  for (const UdpSocket& socket : udp_sockets())
+    if (std::find(ports_.begin(), ports_.end(), socket.port) != ports_.end()) drops += socket.drops;
+  return drops;
+}
+
+std::uint64_t UdpTarget::dropped() const {
+  const std::uint64_t drops = drops_of_ports();
+  return drops > drops_before_ ? drops - drops_before_ : 0;  // of a dead process the ports are gone
+}
 
 std::uint64_t number(const char* variable, std::uint64_t otherwise) {
   const char* const text = std::getenv(variable);
@@ -67,7 +209,7 @@ Bytes malformed(const std::vector<Bytes>& seeds, std::mt19937_64& random) {
   Bytes datagram = seeds[random() % seeds.size()];
   address_to_any_reader(datagram, random);
   if (random() % 3 != 0) mutate_submessages(datagram, random);
-  if (random() % 3 == 0) datagram = mcap::mutate(datagram, seeds[random() % seeds.size()], random);
+  if (random() % 3 == 0) datagram = fuzz::mutate(datagram, seeds[random() % seeds.size()], random);
   if (datagram.size() > 65000) datagram.resize(65000);
   return datagram;
 }
@@ -202,7 +344,7 @@ std::uint64_t write_malformed(bus::RawBus& bus, const Samples::Topic& topic, std
   if (writer->matched() == 0) return 0;  // it has no reader
   for (std::uint64_t i = 0; i < count; ++i) {
     const Bytes& sample = topic.samples[random() % topic.samples.size()];
-    Bytes changed = mcap::mutate(sample, topic.samples[random() % topic.samples.size()], random);
+    Bytes changed = fuzz::mutate(sample, topic.samples[random() % topic.samples.size()], random);
     if (changed.size() < 4) changed.resize(4);
     if (random() % 8 != 0) std::copy_n(sample.begin(), 4, changed.begin());  // mostly with a right header
     writer->write(changed);

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -1,16 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// Feeds changed ROS 1 bags to the reader: fuzz_bag [inputs] [seed]. What must hold for every input: no crash, no
-/// sanitizer report, bounded memory, no exception but BagError. Exit code 1 and the input in fuzz_bag_failed.bag
-/// otherwise. The preset asan-ubsan gives it its teeth.
-#include <unistd.h>
-
+/// Changed ROS 1 bags: no exception but BagError.
+#include <fmt/format.h>
 #include <filesystem>
 
 #include "common/ros_codec/message_definition.hpp"
 #include "common/rosbag1/bag_reader.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
-#include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
 
 namespace rtd::rosbag1 {
@@ -18,16 +14,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxAllocated = 64 << 20;  // chunks of false size are unpacked into 4 MiB and doubled
-
 struct Counted {
   std::uint64_t bags = 0, messages = 0, sum = 0;
 };
-
-io::Bytes bytes_of(const std::string& text) {
-  const auto bytes = io::bytes_of(text);
-  return {bytes.begin(), bytes.end()};
-}
 
 /// Two topics, three chunks.
 test::BagWriter sample(const std::string& compression) {
@@ -45,8 +34,8 @@ test::BagWriter sample(const std::string& compression) {
 std::vector<io::Bytes> seeds() {
   std::vector<io::Bytes> files;
   for (const char* compression : {"none", "bz2", "lz4"}) {
-    files.push_back(bytes_of(sample(compression).closed()));
-    files.push_back(bytes_of(sample(compression).killed()));
+    files.push_back(fuzz::bytes_of(sample(compression).closed()));
+    files.push_back(fuzz::bytes_of(sample(compression).killed()));
   }
   return files;
 }
@@ -75,15 +64,12 @@ void read_all(const fs::path& path, Counted& counted) {
   }
 }
 
-std::string try_input(const fs::path& path, const io::Bytes& input, Counted& counted) {
-  std::ofstream(path, std::ios::binary)
-      .write(reinterpret_cast<const char*>(input.data()), static_cast<std::streamsize>(input.size()));
+std::string try_input(const fuzz::FuzzFile& file, const io::Bytes& input, Counted& counted) {
+  file.write(input);
   try {
-    read_all(path, counted);
+    read_all(file.path(), counted);
   } catch (const BagError&) {
   }
-  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated)
-    return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
 
@@ -92,19 +78,13 @@ std::string try_input(const fs::path& path, const io::Bytes& input, Counted& cou
 
 int main(int argc, char** argv) {
   using namespace rtd;
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("rtd_fuzz_" + std::to_string(getpid()) + ".bag");
   const std::vector<io::Bytes> files = rosbag1::seeds();
+  const fuzz::FuzzFile file(".bag");
   rosbag1::Counted counted;
-  const int result = rtd::testing::run_fuzz(
-      argc, argv, "fuzz_bag_failed.bag",
-      [&](std::mt19937_64& random) {
-        return mcap::mutate(files[random() % files.size()], files[random() % files.size()], random);
-      },
-      [&](const io::Bytes& input, std::mt19937_64&) { return rosbag1::try_input(path, input, counted); },
-      [&] {
-        return "bags opened " + std::to_string(counted.bags) + ", messages read " + std::to_string(counted.messages);
-      });
-  std::filesystem::remove(path);
-  return result;
+  return fuzz::run_fuzz(
+      argc, argv,
+      {.failed_path = "fuzz_bag_failed.bag",
+       .make = [&](fuzz::Random& random) { return fuzz::mutate_one(files, random); },
+       .test = [&](const io::Bytes& input, fuzz::Random&) { return rosbag1::try_input(file, input, counted); },
+       .counted = [&] { return fmt::format("bags opened {}, messages read {}", counted.bags, counted.messages); }});
 }

@@ -1,12 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-/// Feeds changed map files to the reader: fuzz_map [inputs] [seed]. What must hold for every input: no crash, no
-/// sanitizer report, bounded memory; it is refused, or what is read is a sound map that is written as it was read. Exit
-/// code 1 and the input in fuzz_map_failed.rtdmap otherwise. The preset asan-ubsan gives it its teeth.
+/// Changed map files: refused, or what is read is a sound map that is written as it was read.
 #include "common/io/bytes.hpp"
 #include "services/slam/core/store/map_store.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
-#include "tests/fuzz/mcap/mutation.hpp"
 #include "tests/support/sample_map.hpp"
 
 namespace rtd::slam {
@@ -14,9 +11,6 @@ namespace {
 
 using io::Bytes;
 using io::ByteView;
-
-// What the reader allows itself, a block twice, and the map that is made of it.
-constexpr std::size_t kMaxPerByte = 96, kMaxAllocated = 24 << 20;
 
 Bytes bytes_of(const Map& map) {
   io::MemorySink sink;
@@ -46,7 +40,7 @@ void reseal(Bytes& file) {
 }
 
 /// Changes values, not sizes: most such files are still made of blocks.
-void change_values(Bytes& file, std::mt19937_64& random) {
+void change_values(Bytes& file, fuzz::Random& random) {
   constexpr std::array<std::uint64_t, 8> kValues{
       0, 1, 0x7F, 0xFFFF, 0xFFFFFFFF, 0x7FF8000000000000, 0x7FF0000000000000, ~std::uint64_t{0}};
   constexpr std::size_t kBlocks = 16;
@@ -60,7 +54,7 @@ void change_values(Bytes& file, std::mt19937_64& random) {
 }
 
 /// Says that a block has another size: a little off, none, or more than any computer has. The rest is as it was.
-void change_size(Bytes& file, std::mt19937_64& random) {
+void change_size(Bytes& file, fuzz::Random& random) {
   constexpr std::size_t kBlocks = 16, kHead = 8, kCrc = 4;
   std::vector<std::size_t> sizes;
   for (std::size_t at = kBlocks; at + kHead + kCrc <= file.size();) {
@@ -75,11 +69,11 @@ void change_size(Bytes& file, std::mt19937_64& random) {
   io::store(place, hostile[random() % hostile.size()]);
 }
 
-Bytes make_input(const std::vector<Bytes>& files, std::mt19937_64& random) {
+Bytes make_input(const std::vector<Bytes>& files, fuzz::Random& random) {
   const Bytes& file = files[random() % files.size()];
   const std::uint64_t way = random() % 5;
-  if (way == 0) return mcap::mutate(file, files[random() % files.size()], random);
-  Bytes input = way == 1 ? mcap::mutate(file, files[random() % files.size()], random) : file;
+  if (way == 0) return fuzz::mutate(file, files[random() % files.size()], random);
+  Bytes input = way == 1 ? fuzz::mutate(file, files[random() % files.size()], random) : file;
   if (way == 2 || way == 3) change_values(input, random);
   if (way == 4) change_size(input, random);
   reseal(input);
@@ -104,8 +98,6 @@ std::string try_input(const Bytes& file, std::uint64_t& maps) {
     ++maps;
   } catch (const MapFileError&) {
   }
-  if (const std::size_t peak = rtd::testing::peak_allocation(); peak > kMaxAllocated + kMaxPerByte * file.size())
-    return "it made the reader hold " + std::to_string(peak) + " bytes";
   return "";
 }
 
@@ -116,8 +108,12 @@ int main(int argc, char** argv) {
   using namespace rtd;
   const std::vector<io::Bytes> files = slam::seeds();
   std::uint64_t maps = 0;
-  return rtd::testing::run_fuzz(
-      argc, argv, "fuzz_map_failed.rtdmap", [&](std::mt19937_64& random) { return slam::make_input(files, random); },
-      [&](const io::Bytes& input, std::mt19937_64& /*random*/) { return slam::try_input(input, maps); },
-      [&] { return std::to_string(maps) + " of them maps"; });
+  return fuzz::run_fuzz(
+      argc, argv,
+      {.failed_path = "fuzz_map_failed.rtdmap",
+       .make = [&](fuzz::Random& random) { return slam::make_input(files, random); },
+       .test = [&](const io::Bytes& input, fuzz::Random&) { return slam::try_input(input, maps); },
+       .counted = [&] { return std::to_string(maps) + " of them maps"; },
+       .max_allocated = 24 << 20,  // what the reader allows itself, a block twice, and the map that is made of it
+       .max_allocated_per_byte = 96});
 }
