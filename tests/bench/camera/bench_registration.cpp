@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <vector>
 
 #include "common/vision/depth_registration.hpp"
 #include "tests/support/box_scene.hpp"
