@@ -132,6 +132,15 @@ def compare(found: dict, recorded: dict, instructions: str) -> int:
     return 1 if different else 0 if compared else SKIPPED
 
 
+def with_common_part(recorded: dict) -> dict:
+    """What is the same on every processor is written once."""
+    first = next(iter(recorded.values()))
+    common = {name: digest for name, digest in first.items()
+              if all(of_one.get(name) == digest for of_one in recorded.values())}
+    return {"all": common, **{instructions: {name: digest for name, digest in of_one.items() if name not in common}
+                              for instructions, of_one in recorded.items()}}
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--bin", default=str(ROOT / "build/release/bin"), help="folder of the executables")
@@ -145,12 +154,12 @@ def main() -> int:
         os.environ.update(limits(arguments.instructions))
     found = measure(str(pathlib.Path(arguments.bin) / "rtd"),
                     lambda name: any(word in name for word in arguments.only))
-    hashes = json.loads(HASHES.read_text()) if HASHES.exists() else {}
-    recorded = hashes.setdefault(instructions, {})
+    hashes = json.loads(HASHES.read_text())
+    recorded = {name: {**hashes["all"], **hashes[name]} for name in hashes if name != "all"}
     if not arguments.record:
-        return compare(found, recorded, instructions)
-    recorded.update(found)
-    HASHES.write_text(json.dumps(hashes, indent=2) + "\n")
+        return compare(found, recorded.get(instructions, {}), instructions)
+    recorded.setdefault(instructions, {}).update(found)
+    HASHES.write_text(json.dumps(with_common_part(recorded), indent=2) + "\n")
     print(f"recorded {len(found)} hashes for a processor with {instructions}: {HASHES}")
     return 0
 
