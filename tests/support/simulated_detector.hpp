@@ -4,8 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,7 +41,7 @@ struct DetectorOptions {
   std::string model = service::kPaperModel;  ///< real: as `--model` of rtd run
   /// real: least score
   double confidence = detector::DecodeConfig{}.confidence_threshold;
-  std::string remembered_in;  ///< real and truth: file of known answers (remembered_detections.hpp)
+  std::string remembered_in;  ///< real and truth: file of known answers
   /// off; truth: the source's moving pixels in its boxes of people; else: the ONNX file of a network for them
   std::string masks = "off";
   std::string masks_remembered_in;  ///< of a network: file of known answers

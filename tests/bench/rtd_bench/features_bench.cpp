@@ -9,7 +9,6 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <set>
-#include <stdexcept>
 
 #include "services/filter/core/orb/orb_extractor.hpp"
 

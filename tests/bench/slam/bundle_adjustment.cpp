@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 #include <vector>
 
 #include "common/service/monotonic_clock.hpp"

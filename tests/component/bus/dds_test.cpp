@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Two connections within one process, with every vendor.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>

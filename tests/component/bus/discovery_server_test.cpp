@@ -11,8 +11,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <functional>
-#include <optional>
 #include <thread>
 
 #include "common/bus/network.hpp"

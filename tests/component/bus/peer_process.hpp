@@ -12,7 +12,6 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "common/bus/bus_factory.hpp"
 #include "tests/support/test_domain.hpp"

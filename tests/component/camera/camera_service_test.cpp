@@ -9,7 +9,6 @@
 #include <atomic>
 #include <condition_variable>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <future>
 #include <mutex>
@@ -29,11 +28,7 @@ namespace {
 using test::kPatience;
 using test::kTinyScene;
 using test_support::eventually;
-using ::testing::ElementsAre;
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 /// Stands for filter and slam: notes every frame, answers those that `answers` accepts.
 class FakeTracker {

@@ -16,10 +16,7 @@ using test::agreement;
 using test::Agreement;
 using test::play;
 using test::same;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 TEST(SyntheticSource, gives_the_same_bits_for_the_same_seed) {
   const auto first = play("synthetic:office?frames=3&seed=7"), second = play("synthetic:office?frames=3&seed=7");

@@ -28,10 +28,7 @@ namespace rtd::detector {
 namespace {
 
 using test_support::Inbox;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 /// A camera and a filter around one detector service.
 class DetectorServiceTest : public test_support::ServiceFixture<DetectorService> {

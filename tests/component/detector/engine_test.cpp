@@ -22,11 +22,7 @@
 namespace rtd::detector {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::ThrowsMessage;
-using ::testing::UnorderedElementsAre;
+using namespace ::testing;
 using vision::Detection;
 
 /// With the library that the tests were built for.

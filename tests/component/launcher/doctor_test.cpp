@@ -21,11 +21,7 @@ namespace rtd::launcher {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::Contains;
-using testing::Field;
-using testing::HasSubstr;
-using testing::Not;
+using namespace ::testing;
 
 /// A host that lacks nothing but what the test takes away.
 class DoctorTest : public testing::Test {

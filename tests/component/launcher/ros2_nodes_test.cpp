@@ -13,13 +13,7 @@ namespace rtd::launcher {
 namespace {
 
 using rtd::testing::RosDouble;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::IsSupersetOf;
-using ::testing::StartsWith;
+using namespace ::testing;
 namespace type = msg::parameter_type;
 
 /// By vendor.

@@ -1,12 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include <unistd.h>
 
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgproc.hpp>
-#include <regex>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/topics.hpp"

@@ -3,7 +3,8 @@
 //
 // How much of a robot another participant discovers: all of it in the robot's own domain, the link in that of the
 // fleet.
-#include <gmock/gmock.h>
+
+#include <gtest/gtest.h>
 
 #include <mutex>
 #include <set>

@@ -11,10 +11,7 @@
 namespace rtd::security {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using namespace ::testing;
 
 /// "open": access only, as the raw frames; "secret": encrypted.
 const std::vector<std::string> kTopics = {"rt/open", "rt/secret"};

@@ -4,18 +4,88 @@
 // The real services: what they open is what the table of roles says, and secured they do the same work.
 #include <gmock/gmock.h>
 
+#include <map>
+#include <mutex>
 #include <regex>
+#include <set>
+#include <string>
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/commands.hpp"
+#include "common/bus/fastdds/participant.hpp"
 #include "common/bus/topic_roles.hpp"
 #include "common/bus/topics.hpp"
 #include "common/msg/imu.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
-#include "tests/component/security/endpoint_census.hpp"
 #include "tests/support/sanitizers.hpp"
 #include "tests/support/test_domain.hpp"
+
+namespace rtd::bus {
+namespace {
+
+/// Who opens which writers and readers in a domain, by participant name: "rtd-slam" writes "rtd/tracking".
+class EndpointCensus : private fastdds::DiscoveryAdapter {
+ public:
+  explicit EndpointCensus(std::uint32_t domain) : participant_(options(domain), read_host_limits(), &writers_) {
+    participant_.observe(*this);
+  }
+  ~EndpointCensus() override { participant_.silence(); }
+
+  struct Topics {
+    std::set<std::string> writes, reads;
+  };
+  std::map<std::string, Topics> by_participant() const;
+
+ private:
+  static BusOptions options(std::uint32_t domain);
+  void found(const fastdds::FoundParticipant& participant) override;
+  void found(const TopicWriter& writer, bool gone) override;
+  void found(const TopicReader& reader, bool gone) override;
+
+  mutable std::mutex mutex_;
+  std::map<ParticipantId, std::string> names_;
+  std::map<ParticipantId, Topics> topics_;
+  EndpointRegistry writers_;          // with it, everything is discovered
+  fastdds::Participant participant_;  // last: calls the others
+};
+
+BusOptions EndpointCensus::options(std::uint32_t domain) {
+  BusOptions options;
+  options.domain = domain;
+  options.participant_name = "census";
+  return options;
+}
+
+std::map<std::string, EndpointCensus::Topics> EndpointCensus::by_participant() const {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, Topics> all;
+  for (const auto& [guid, topics] : topics_) {
+    const auto name = names_.find(guid);
+    if (name == names_.end()) continue;
+    all[name->second].writes.insert(topics.writes.begin(), topics.writes.end());
+    all[name->second].reads.insert(topics.reads.begin(), topics.reads.end());
+  }
+  return all;
+}
+
+void EndpointCensus::found(const fastdds::FoundParticipant& participant) {
+  const std::lock_guard lock(mutex_);
+  names_.try_emplace(participant.id, participant.name);
+}
+
+void EndpointCensus::found(const TopicWriter& writer, bool /*gone*/) {
+  const std::lock_guard lock(mutex_);
+  topics_[participant_of(writer.id)].writes.insert(writer.topic.name);
+}
+
+void EndpointCensus::found(const TopicReader& reader, bool /*gone*/) {
+  const std::lock_guard lock(mutex_);
+  topics_[participant_of(reader.id)].reads.insert(reader.topic.name);
+}
+
+}  // namespace
+}  // namespace rtd::bus
 
 namespace rtd::launcher {
 namespace {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Preloaded into an attacker whose certificate is expired: to it, it is CLOCK_SHIFT_S seconds later (or earlier).
-#include <sys/time.h>
 
 #include <cstdlib>
 #include <ctime>

@@ -8,7 +8,6 @@
 #include <limits>
 #include <thread>
 
-#include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/slam/core/slam_system.hpp"
 #include "tests/support/feature_world.hpp"

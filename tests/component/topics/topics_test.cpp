@@ -24,11 +24,7 @@ namespace rtd::topics {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
+using namespace ::testing;
 
 /// While it lives, an interrupt of this thread waits for the command.
 class InterruptWaits {

@@ -3,10 +3,8 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <random>
-#include <span>
 #include <string>
 #include <vector>
 

@@ -3,13 +3,13 @@
 //
 // docs/gpu-box.md, played with network namespaces: four robots, each in a domain of its own behind a link, and the box
 // on another host. RTD_NETWORK_CAMPAIGN=1 takes the real network, longer times and the asked limits.
-#include <gmock/gmock.h>
+
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <thread>

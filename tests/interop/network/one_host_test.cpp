@@ -12,10 +12,7 @@ namespace {
 
 using launcher::RtdCommand;
 using test_support::TwoHosts;
-using ::testing::AllOf;
-using ::testing::ContainsRegex;
-using ::testing::HasSubstr;
-using ::testing::Not;
+using namespace ::testing;
 
 /// By vendor.
 class OneHost : public ::testing::TestWithParam<std::string> {

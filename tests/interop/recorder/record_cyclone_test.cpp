@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <sstream>
-#include <thread>
 
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/component/recorder/recorder_process.hpp"

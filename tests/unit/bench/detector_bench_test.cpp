@@ -17,12 +17,7 @@
 namespace rtd::bench {
 namespace {
 
-using testing::AllOf;
-using testing::Each;
-using testing::Gt;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
+using namespace ::testing;
 
 /// Three images of 64 x 64 px, each with one white cell that the tiny network sees as a person.
 class DetectorBench : public testing::Test {

@@ -2,10 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 #include <set>
 
 #include "common/bus/message_screen.hpp"

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 #include <openssl/sha.h>
 
-#include <algorithm>
 #include <fstream>
 #include <memory>
 #include <random>

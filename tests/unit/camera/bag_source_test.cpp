@@ -17,11 +17,7 @@ using test::play_all;
 using test::Played;
 using test::refuses;
 using test::SequenceFolder;
-using ::testing::AllOf;
-using ::testing::Contains;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using namespace ::testing;
 
 TEST(BagSource, plays_pairs_with_the_stamps_of_their_headers) {
   ImageBag bag;

@@ -14,10 +14,7 @@ namespace rtd::camera::layouts {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 TEST(CaptureFolders, names_of_capture_scripts_pair) {
   const std::vector<std::array<const char*, 4>> forms = {

@@ -12,10 +12,7 @@
 namespace rtd::camera {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 

@@ -19,12 +19,8 @@ using test::McapFile;
 using test::own_frame;
 using test::play_all;
 using test::Played;
-using test::same;
 using test::SequenceFolder;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 constexpr const char* kImage = "sensor_msgs/msg/Image";
 constexpr const char* kCompressed = "sensor_msgs/msg/CompressedImage";
@@ -57,8 +53,8 @@ TEST_P(DepthFactors, what_is_exported_comes_back_pixel_by_pixel) {
   for (std::size_t i = 0; i < 3; ++i) {
     const vision::RgbdImage &a = before.frames[i].image, &b = after.frames[i].image;
     EXPECT_EQ(b.stamp_ns, a.stamp_ns);
-    EXPECT_TRUE(same(a.color_bgr, b.color_bgr));
-    EXPECT_TRUE(same(a.depth, b.depth));
+    EXPECT_TRUE(test::same(a.color_bgr, b.color_bgr));
+    EXPECT_TRUE(test::same(a.depth, b.depth));
     EXPECT_NEAR(1 / b.depth_scale_m, GetParam(), 1e-6);
     EXPECT_EQ(b.camera.parameters().distortion, a.camera.parameters().distortion);
     EXPECT_EQ(b.camera.parameters().cx, a.camera.parameters().cx);
@@ -96,8 +92,8 @@ TEST(McapSource, plays_what_ros2_records) {
   const Played played = play_all(file.uri());
   ASSERT_THAT(played.frames, SizeIs(1));
   EXPECT_EQ(played.frames[0].image.stamp_ns, 1'000'000'000);
-  EXPECT_TRUE(same(played.frames[0].image.color_bgr, ImageBag::color()));
-  EXPECT_TRUE(same(played.frames[0].image.depth, ImageBag::depth()));
+  EXPECT_TRUE(test::same(played.frames[0].image.color_bgr, ImageBag::color()));
+  EXPECT_TRUE(test::same(played.frames[0].image.depth, ImageBag::depth()));
 }
 
 TEST(McapSource, plays_bags_that_were_converted_to_mcap) {

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 
 #include "common/camera/source_factory.hpp"
-#include "common/geometry/se3.hpp"
 
 namespace rtd::camera {
 namespace {

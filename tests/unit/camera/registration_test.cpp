@@ -25,11 +25,7 @@ using test::McapFile;
 using test::play;
 using test::SequenceFolder;
 using test::TwoCameras;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 constexpr const char* kRosImage = "sensor_msgs/Image";
 constexpr const char* kRosInfo = "sensor_msgs/CameraInfo";

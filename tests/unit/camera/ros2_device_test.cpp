@@ -11,10 +11,7 @@ namespace rtd::camera {
 namespace {
 
 using test::ImageBag;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 TEST_F(Ros2DeviceTest, pairs_by_stamp_as_soon_as_both_are_there_and_keeps_the_drivers_calibration) {
   begin();

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vision/image_file.hpp"
-
 #include <gmock/gmock.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -13,9 +11,14 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <random>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "common/msg/largest_sample.hpp"
 #include "common/msg/ros.hpp"
+#include "common/vision/image_file.hpp"
+#include "common/vision/jpeg_size.hpp"
 #include "common/vision/plain_png.hpp"
 #include "tests/support/time_bounds.hpp"
 
@@ -303,6 +306,26 @@ TEST(ImageCodecs, decode_the_data_to_the_pixels_of_opencv) {
   }
   EXPECT_GT(compared, 0U);
   RecordProperty("compared", static_cast<int>(compared));
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) {
+  return {text.begin(), text.end()};
+}
+
+TEST(JpegSize, is_read_from_the_frame_header) {
+  // Start of image, one comment segment of 4 bytes, baseline frame header of 640x480.
+  const std::vector<std::uint8_t> jpeg{0xFF, 0xD8, 0xFF, 0xFE, 0x00, 0x04, 'h',  'i',  0xFF, 0xC0, 0x00,
+                                       0x11, 0x08, 0x01, 0xE0, 0x02, 0x80, 0x03, 0x01, 0x22, 0x00};
+  EXPECT_EQ(jpeg_size(jpeg).width, 640);
+  EXPECT_EQ(jpeg_size(jpeg).height, 480);
+  for (std::size_t length = 0; length < 17; ++length) {
+    EXPECT_EQ(jpeg_size(std::span(jpeg).first(length)).width, 0) << length;
+  }
+  const std::vector<std::uint8_t> huffman_first{0xFF, 0xD8, 0xFF, 0xC4, 0x00, 0x08, 9,    9,    9,
+                                                9,    9,    9,    0xFF, 0xC0, 0x00, 0x11, 0x08, 0x01,
+                                                0xE0, 0x02, 0x80, 0x03, 0x01, 0x22, 0x00};
+  EXPECT_EQ(jpeg_size(huffman_first).width, 640);
+  EXPECT_EQ(jpeg_size(bytes_of("this is no image at all")).width, 0);
 }
 
 }  // namespace

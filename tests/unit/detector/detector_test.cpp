@@ -17,11 +17,7 @@
 namespace rtd::detector {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 class DetectorTest : public ::testing::Test {
  protected:

@@ -14,10 +14,7 @@
 namespace rtd::detector {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::Pair;
-using ::testing::SizeIs;
+using namespace ::testing;
 
 OnnxFile read(const std::string& bytes) {
   return read_onnx_file(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());

@@ -15,10 +15,7 @@
 namespace rtd::eval {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using namespace ::testing;
 using testing_support::moved;
 using testing_support::read_text;
 using testing_support::some_transform;

@@ -13,10 +13,7 @@
 namespace rtd::eval {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
-using testing::HasSubstr;
-using testing::Not;
+using namespace ::testing;
 using testing_support::page_data;
 using testing_support::TemporaryFolder;
 

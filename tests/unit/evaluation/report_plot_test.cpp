@@ -4,18 +4,12 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <limits>
 
 namespace rtd::plot {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::Pointwise;
+using namespace ::testing;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

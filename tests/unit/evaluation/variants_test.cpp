@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/experiment/experiment.hpp"
-
 #include <gmock/gmock.h>
 
+#include <csignal>
+
 #include "common/service/config.hpp"
+#include "services/evaluation/commands/experiment_command.hpp"
+#include "services/evaluation/core/experiment/experiment.hpp"
+#include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -12,6 +15,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing_support::TemporaryFolder;
 
 const std::vector<std::string> kModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
 const std::vector<Technique> kTechniques{{"filter.techniques.depth_check", "no check"},
@@ -83,6 +87,39 @@ TEST(Variants, gives_every_source_a_folder_of_its_own) {
   EXPECT_THAT(
       source_names({"tum:/data/walk_xyz/", "tum:/other/walk_xyz?masks=1", "synthetic:office?frames=3", "tum:/.."}),
       ElementsAre("walk_xyz", "walk_xyz_2", "office", "source"));
+}
+
+ProgramTask shell(const std::string& script) {
+  return [script](int place) { return std::vector<std::string>{"/bin/sh", "-c", script, "sh", std::to_string(place)}; };
+}
+
+TEST(ProgramRunner, runs_all_and_passes_on_how_each_ended_and_what_it_printed) {
+  service::InterruptSignals signals;
+  std::vector<std::pair<int, std::string>> ended(3);
+  EXPECT_TRUE(run_programs({shell("echo a; echo b"), shell("exit 3"), shell("echo c >&2")}, 2, signals,
+                           [&](const ProgramResult& result) {
+                             ended[result.task] = {result.exit.code, result.last_line};
+                           }));
+  EXPECT_THAT(ended, ElementsAre(std::pair{0, "b"}, std::pair{3, ""}, std::pair{0, "c"}));
+}
+
+TEST(ProgramRunner, gives_those_that_run_together_places_of_their_own) {
+  const TemporaryFolder folder;
+  const std::string script = "mkdir " + folder.file("") + "$1 && sleep 0.1 && rmdir " + folder.file("") + "$1";
+  service::InterruptSignals signals;
+  std::vector<int> codes(5, -1);
+  run_programs(std::vector<ProgramTask>(5, shell(script)), 2, signals,
+               [&](const ProgramResult& result) { codes[result.task] = result.exit.code; });
+  EXPECT_THAT(codes, testing::Each(0)) << "a place has one program at a time";
+}
+
+TEST(ProgramRunner, a_signal_ends_those_that_run_without_a_call) {
+  service::InterruptSignals signals;
+  int calls = 0;
+  const bool finished = run_programs({shell("kill -INT " + std::to_string(getpid())), shell("sleep 60")}, 2, signals,
+                                     [&](const ProgramResult&) { ++calls; });
+  EXPECT_FALSE(finished);
+  EXPECT_LE(calls, 1);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/launcher/core/completion/completion.hpp"
-
 #include <gmock/gmock.h>
+
+#include "services/launcher/core/completion/completion.hpp"
 
 namespace rtd::launcher {
 namespace {

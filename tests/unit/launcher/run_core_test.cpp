@@ -3,16 +3,25 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
 #include "common/process/posix_process_host.hpp"
 #include "services/launcher/core/run/record_builder.hpp"
 #include "services/launcher/core/run/terminal.hpp"
+#include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/process/service_logs.hpp"
 #include "services/launcher/process/usage_registry.hpp"
+#include "services/launcher/run/run_command.hpp"
 
 namespace rtd::launcher {
 namespace {
 
+using camera::DeviceMode;
+using camera::Stream;
 using testing::ElementsAre;
+using ::testing::HasSubstr;
 
 std::vector<std::string> split(const std::vector<std::string>& chunks) {
   std::vector<std::string> lines;
@@ -90,6 +99,84 @@ TEST(live_status, shows_everything_in_one_short_line) {
   status.state = msg::TrackingState::kRecentlyLost;
   EXPECT_EQ(format_live_status(status),
             "frame 123  29.8 fps  recently lost  inliers 213  dynamic 87  dropped 2  latency 31 ms");
+}
+
+namespace fs = std::filesystem;
+
+class TraceFileTest : public testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(parts_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  void part(const std::string& name, const std::string& text) { std::ofstream(parts_ / name) << text; }
+  std::string joined() {
+    std::stringstream text;
+    text << std::ifstream(folder_ / "trace.json").rdbuf();
+    return text.str();
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / ("rtd_trace_" + std::to_string(getpid()));
+  const fs::path parts_ = folder_ / "parts";
+};
+
+TEST_F(TraceFileTest, joins_the_parts_and_removes_them) {
+  part("slam.2.jsonl", "{\"name\":\"b\",\"args\":{}}\n");
+  part("filter.1.jsonl", "{\"name\":\"a\",\"args\":{}}\n");
+  EXPECT_EQ(join_trace(parts_, folder_ / "trace.json"), "");
+  EXPECT_EQ(joined(),
+            "{\"displayTimeUnit\":\"ms\",\"traceEvents\":[\n{\"name\":\"a\",\"args\":{}},\n{\"name\":\"b\",\"args\":{}}"
+            "\n]}\n");
+  EXPECT_FALSE(fs::exists(parts_));
+}
+
+TEST_F(TraceFileTest, leaves_out_what_a_killed_process_did_not_finish) {
+  part("slam.2.jsonl", "{\"name\":\"b\",\"args\":{}}\n{\"name\":\"c\",\"ar");
+  EXPECT_EQ(join_trace(parts_, folder_ / "trace.json"), "");
+  EXPECT_THAT(joined(), testing::Not(testing::HasSubstr("\"c\"")));
+}
+
+TEST_F(TraceFileTest, says_what_it_cannot_do) {
+  EXPECT_THAT(join_trace(folder_ / "none", folder_ / "trace.json"), testing::HasSubstr("No such file"));
+  EXPECT_THAT(join_trace(parts_, folder_ / "none/trace.json"),
+              testing::HasSubstr("none/trace.json: there is no such folder"));
+}
+
+TEST(CameraCheckTest, lists_cameras_with_their_modes_and_what_keeps_them_from_being_used) {
+  const std::vector<DeviceMode> modes = {{Stream::kColor, {640, 480}, 30, "RGB8"},
+                                         {Stream::kDepth, {640, 480}, 30, "Z16"}};
+  Findings findings;
+  describe_cameras({{"openni2:1d27/0609@1/5", "PrimeSense", modes, ""},
+                    {"realsense-dds:1234", "RealSense", {modes[0]}, "it streams no depth"},
+                    {"openni2:2bc5/0401@1/6", "Astra", {}, "no permission"}},
+                   findings);
+  ASSERT_EQ(findings.size(), 3U);
+  EXPECT_EQ(findings[0].verdict, Verdict::kOk);
+  EXPECT_EQ(
+      findings[0].text,
+      "camera: --source openni2:1d27/0609@1/5 (PrimeSense): colour 640 x 480 RGB8 30 Hz; depth 640 x 480 Z16 30 Hz");
+  EXPECT_EQ(findings[1].verdict, Verdict::kOk) << "a camera of another program is no fault";
+  EXPECT_THAT(findings[1].text, HasSubstr("it streams no depth"));
+  EXPECT_EQ(findings[2].verdict, Verdict::kWarn);
+}
+
+TEST(CameraCheckTest, says_what_the_build_supports_when_there_is_none) {
+  Findings findings;
+  describe_cameras({}, findings);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0].text, HasSubstr("openni2"));
+}
+
+TEST(CameraCheckTest, a_run_without_its_camera_gets_the_answer_of_the_doctor) {
+  EXPECT_THAT(why_no_camera("openni2", "", {}), HasSubstr("'rtd doctor' says:\n  cameras: none is plugged in"));
+  const std::vector<camera::FoundCamera> cameras = {{"openni2:1d27/0609@1/5", "PrimeSense", {}, ""},
+                                                    {"openni2:2bc5/0401@1/6", "Astra", {}, "no permission"}};
+  EXPECT_EQ(why_no_camera("openni2", "", cameras), "");
+  EXPECT_EQ(why_no_camera("openni2", "1d27/0609@1/5", cameras), "");
+  EXPECT_THAT(why_no_camera("openni2", "2bc5/0401@1/6", cameras), HasSubstr("(Astra): no permission"));
+  EXPECT_THAT(why_no_camera("openni2", "1d27/0609@1/9", cameras),
+              HasSubstr("camera: --source openni2:1d27/0609@1/5 (PrimeSense)"));
+  const std::vector<camera::FoundCamera> on_dds = {{"realsense-dds:1234", "RealSense", {}, ""}};
+  EXPECT_EQ(why_no_camera("realsense-dds", "1234", on_dds), "");
+  EXPECT_THAT(why_no_camera("realsense-dds", "99", on_dds), HasSubstr("--source 'realsense-dds:99': the camera"));
 }
 
 }  // namespace

@@ -13,11 +13,7 @@ namespace {
 
 using camera::test::ImageBag;
 using camera::test::McapFile;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 msg::Imu imu() {
   msg::Imu sample;

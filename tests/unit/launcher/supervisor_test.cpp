@@ -12,12 +12,7 @@ namespace rtd::launcher {
 namespace {
 
 using std::chrono::milliseconds;
-using testing::AllOf;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using namespace ::testing;
 
 class SupervisorTest : public testing::Test {
  protected:

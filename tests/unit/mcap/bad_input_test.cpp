@@ -10,11 +10,7 @@
 namespace rtd::mcap {
 namespace {
 
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::Field;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using namespace ::testing;
 
 auto kind(ProblemKind kind) {
   return Field(&Problem::kind, kind);

@@ -1,16 +1,18 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "common/mcap/copy.hpp"
+#include "tests/unit/mcap/raw_file.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {
 namespace {
 
 using ::testing::IsEmpty;
+using ::testing::SizeIs;
 
 struct WriterShape {
   Compression compression;
@@ -112,6 +114,159 @@ TEST(IndexedReader, reads_a_closed_file_without_scanning_it) {
   const Bytes file = file_of(sample_messages(10, 10));
   const io::MemorySource source(file);
   EXPECT_FALSE(IndexedReader(source).summary().scanned);
+}
+
+Bytes joined(const std::vector<Bytes>& parts, CopyReport& report) {
+  std::vector<io::MemorySource> sources;
+  for (const Bytes& part : parts) sources.emplace_back(part);
+  std::vector<const io::ByteSource*> pointers;
+  for (const io::MemorySource& source : sources) pointers.push_back(&source);
+  io::MemorySink sink;
+  report = join(pointers, sink);
+  return sink.bytes();
+}
+
+/// A file with one channel whose ids are not those of sample_file.hpp.
+Bytes file_with_other_ids(const std::vector<StoredMessage>& messages) {
+  io::MemorySink sink;
+  Writer writer(sink);
+  writer.write(Schema{7, "geometry_msgs/msg/PoseStamped", "ros2msg", "std_msgs/Header header"});
+  writer.write(Channel{1, 0, "/log", "json", {}});
+  writer.write(Channel{9, 7, "/pose", "cdr", {{"offered_qos_profiles", "- history: 1"}}});
+  for (const StoredMessage& message : messages)
+    writer.write(Message{9, message.sequence, message.log_time, message.publish_time, io::bytes_of(message.data)});
+  writer.write(Metadata{"rosbag2", {{"a", "b"}}});
+  writer.close();
+  return sink.bytes();
+}
+
+TEST(Join, gives_every_message_of_all_parts_in_their_order) {
+  const std::vector<StoredMessage> all = sample_messages(100, 300);
+  std::vector<StoredMessage> last;
+  for (std::uint32_t i = 0; i < 10; ++i) last.push_back({"/pose", i, 5000 + i, 5000 + i, "some bytes"});
+  CopyReport report;
+  const Bytes file = joined({file_of({all.begin(), all.begin() + 60}), file_of({all.begin() + 60, all.end()}),
+                             file_with_other_ids(last), file_with_other_ids({})},
+                            report);
+  std::vector<StoredMessage> expected = all;
+  expected.insert(expected.end(), last.begin(), last.end());
+  const ReadBack back = stream(file);
+  EXPECT_TRUE(back.problems.empty()) << texts(back.problems);
+  EXPECT_TRUE(back.messages == expected);
+  EXPECT_EQ(by_index(file).messages.size(), expected.size());
+  EXPECT_FALSE(report.data_lost);
+  EXPECT_EQ(report.copied.message_count, 110U);
+  EXPECT_EQ(report.copied.channel_count, 3U) << "/pose, /frame and /log once each";
+  EXPECT_EQ(report.copied.schema_count, 1U);
+  EXPECT_EQ(report.copied.metadata_count, 1U);
+}
+
+TEST(Join, takes_the_intact_part_of_a_damaged_file_and_reports_it) {
+  const std::vector<StoredMessage> all = sample_messages(100, 300);
+  WriterOptions small;
+  small.chunk_size = 2000;
+  Bytes cut = file_of({all.begin(), all.begin() + 50}, small);
+  cut.resize(cut.size() / 2);
+  CopyReport report;
+  const Bytes file = joined({cut, file_of({all.begin() + 50, all.end()})}, report);
+  EXPECT_TRUE(report.data_lost);
+  EXPECT_GT(report.problem_count, 0U);
+  const ReadBack back = stream(file);
+  EXPECT_TRUE(back.problems.empty()) << texts(back.problems);
+  EXPECT_GT(back.messages.size(), 60U);
+  EXPECT_LT(back.messages.size(), 100U);
+  EXPECT_TRUE(back.messages.back() == all.back());
+}
+
+TEST(Join, of_nothing_is_an_empty_file) {
+  CopyReport report;
+  EXPECT_TRUE(stream(joined({}, report)).messages.empty());
+}
+
+/// Whole files with the peculiarities of other libraries: no problem is reported.
+
+/// Python's mcap names groups without records: their length is 0.
+TEST(OtherWriters, summary_offsets_of_empty_groups_are_no_damage) {
+  const Bytes records = message_record(1, "abc");
+  RawFile file;
+  file.add_channel().add(chunk_of(records));
+  const std::uint64_t start = file.data_end();
+  Bytes summary;
+  append_record(summary, Channel{1, 0, "/a", "cdr", {}});
+  const std::uint64_t length = summary.size();
+  append_record(summary, SummaryOffset{Opcode::kChannel, start, length});
+  append_record(summary, SummaryOffset{Opcode::kAttachmentIndex, start + length, 0});
+  append_record(summary, SummaryOffset{Opcode::kMetadataIndex, start + length, 0});
+  const ReadBack result = stream(file.finish(summary, Footer{start, start + length, 0}));
+  EXPECT_THAT(result.problems, IsEmpty()) << texts(result.problems);
+  EXPECT_THAT(result.messages, SizeIs(1));
+}
+
+TEST(OtherWriters, a_missing_group_with_a_length_is_still_reported) {
+  RawFile file;
+  const std::uint64_t start = file.add_channel().data_end();
+  Bytes summary;
+  append_record(summary, SummaryOffset{Opcode::kMetadataIndex, start, 20});
+  EXPECT_THAT(stream(file.finish(summary, Footer{start, start, 0})).problems, SizeIs(1));
+}
+
+/// Python's mcap and libmcap give the place of a summary that they left out.
+TEST(OtherWriters, the_place_of_an_absent_summary_is_no_damage) {
+  for (const bool names_summary : {false, true}) {
+    RawFile file;
+    const std::uint64_t end = file.add_channel().add(Message{1, 0, 5, 5, io::bytes_of("abc")}).data_end();
+    const ReadBack result = stream(file.finish({}, Footer{names_summary ? end : 0, end, 0}));
+    EXPECT_THAT(result.problems, IsEmpty()) << texts(result.problems);
+    EXPECT_THAT(result.messages, SizeIs(1));
+  }
+}
+
+/// libmcap repeats all channels in the summary, but counts only those with messages.
+TEST(OtherWriters, a_channel_count_without_silent_channels_keeps_the_summary) {
+  const Bytes records = message_record(1, "abc");
+  const auto file_with = [&](std::uint32_t channel_count, ChannelId counted) {
+    RawFile file;
+    file.add_channel(1).add_channel(2);
+    const ChunkIndex index = index_of(chunk_of(records), file.size(), 49 + records.size());
+    file.add(chunk_of(records));
+    Statistics statistics;
+    statistics.message_count = statistics.chunk_count = 1;
+    statistics.channel_count = channel_count;
+    statistics.message_start_time = statistics.message_end_time = 5;
+    statistics.channel_message_counts[counted] = 1;
+    Bytes summary;
+    append_record(summary, Channel{1, 0, "/a", "cdr", {}});
+    append_record(summary, Channel{2, 0, "/a", "cdr", {}});
+    append_record(summary, statistics);
+    append_record(summary, index);
+    return file.finish(summary);
+  };
+  const auto is_scanned = [](const Bytes& file) {
+    const io::MemorySource source(file);
+    return IndexedReader(source).summary().scanned;
+  };
+  EXPECT_FALSE(is_scanned(file_with(1, 1)));
+  EXPECT_FALSE(is_scanned(file_with(2, 1)));
+  EXPECT_TRUE(is_scanned(file_with(3, 1))) << "a channel is missing";
+  EXPECT_TRUE(is_scanned(file_with(2, 3))) << "messages of an unknown channel";
+}
+
+TEST(OtherWriters, optional_parts_may_be_missing) {
+  const auto messages = sample_messages(12, 20);
+  for (const bool chunks : {true, false})
+    for (const bool index : {true, false})
+      for (const bool repeated : {true, false}) {
+        WriterOptions options;
+        options.use_chunks = chunks;
+        options.use_message_index = options.use_chunk_index = index;
+        options.use_statistics = options.use_repeated_channels = options.use_repeated_schemas = repeated;
+        options.chunk_size = 200;
+        const Bytes file = file_of(messages, options);
+        const ReadBack streamed = stream(file), indexed = by_index(file);
+        EXPECT_THAT(streamed.problems, IsEmpty()) << texts(streamed.problems);
+        EXPECT_EQ(indexed.messages, messages);
+        for (const Problem& problem : indexed.problems) EXPECT_FALSE(is_damage(problem)) << to_string(problem);
+      }
 }
 
 }  // namespace

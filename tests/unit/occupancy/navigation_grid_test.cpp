@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
 #include "common/occupancy/navigation_grid.hpp"
 
-#include <gmock/gmock.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>

@@ -22,11 +22,7 @@ using test::messages_of;
 using test::packed;
 using test::Sample;
 using test::samples;
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 class OpenTest : public ::testing::Test {
  protected:

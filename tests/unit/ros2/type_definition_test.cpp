@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The lists of fields against the IDL files, and the texts that recordings carry.
-
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <openssl/sha.h>
@@ -153,6 +152,71 @@ TEST(SchemaTexts, come_back_from_their_sample_and_garbage_is_refused) {
   EXPECT_EQ(schemas[0].definition.encoding, "ros2msg");
   EXPECT_EQ(schemas[0].definition.text, "int32 x\n");
   EXPECT_THROW(decode_schemas(std::span(cdr).first(cdr.size() / 2)), ros::WireError);
+}
+
+constexpr const char* kIdl = R"(
+// struct Frame_ { of former times
+module m { struct Point_ { double x; };  // metres
+@final struct Frame_ { unsigned long long seq; sequence<Point_> points; octet data[16]; };
+struct Other_ { long a; }; };)";
+
+TEST(TypeLayout, is_the_same_for_other_comments_blanks_and_neighbours) {
+  constexpr const char* kOther = R"(module m {
+  struct Point_ {
+    double x;
+  };
+  struct Frame_ {
+    unsigned long long seq; // counts from 0
+    sequence< Point_ > points;
+    octet data [ 16 ];
+  };
+};)";
+  EXPECT_FALSE(layout_in(kIdl, "Frame_").empty());
+  EXPECT_EQ(layout_in(kIdl, "Frame_"), layout_in(kOther, "Frame_"));
+}
+
+TEST(TypeLayout, changes_with_fields_of_the_type_and_of_those_that_it_is_made_of) {
+  const auto changed = [](const std::string& from, const std::string& to) {
+    std::string idl = kIdl;
+    idl.replace(idl.find(from), from.size(), to);
+    return layout_in(idl, "Frame_") != layout_in(kIdl, "Frame_");
+  };
+  EXPECT_TRUE(changed("octet data[16]", "octet data[17]"));
+  EXPECT_TRUE(changed("octet data[16]; ", ""));
+  EXPECT_TRUE(changed("double x", "float x"));
+  EXPECT_FALSE(changed("long a", "double a"));
+}
+
+TEST(TypeLayout, is_empty_without_a_definition_and_ends_in_damaged_texts) {
+  EXPECT_EQ(layout_in("", "Frame_"), "");
+  EXPECT_EQ(layout_in(kIdl, "Image_"), "");
+  EXPECT_FALSE(layout_in("struct Frame_ { Frame_ again", "Frame_").empty());
+}
+
+TEST(Ros2Names, topics_go_there_and_back) {
+  EXPECT_EQ(ros_topic("rt/slam/odometry"), "/slam/odometry");
+  EXPECT_EQ(ros_topic("rtd/frame"), "rtd/frame");
+  EXPECT_EQ(ros_topic("rt"), "rt");
+  for (const char* topic : {"rt/slam/odometry", "rtd/frame", "rt/a", "rq/add_two_intsRequest", "rt", "DDSPerfRData"}) {
+    EXPECT_EQ(dds_topic(ros_topic(topic)), topic);
+  }
+}
+
+TEST(Ros2Names, types_go_there_and_back) {
+  EXPECT_EQ(ros_type("nav_msgs::msg::dds_::Odometry_"), "nav_msgs/msg/Odometry");
+  EXPECT_EQ(ros_type("example_interfaces::srv::dds_::AddTwoInts_Request_"),
+            "example_interfaces/srv/AddTwoInts_Request");
+  for (const char* type : {"nav_msgs::msg::dds_::Odometry_", "KeyedSeq", "a::b::C", "x::msg::dds_::No", "dds_", ""}) {
+    EXPECT_EQ(dds_type(ros_type(type)), type);
+  }
+}
+
+TEST(Names, patterns_fit_either_spelling_of_a_topic) {
+  for (const char* topic : {"/slam/pose", "rt/slam/pose"}) {
+    for (const char* pattern : {"/slam/*", "rt/slam/pose", "rt/*", "*"}) EXPECT_TRUE(matches_topic(pattern, topic));
+    for (const char* pattern : {"slam/pose", "/slam", "rtd/*"}) EXPECT_FALSE(matches_topic(pattern, topic));
+  }
+  EXPECT_TRUE(matches_topic("rtd/*", "rtd/anna/frame"));
 }
 
 }  // namespace

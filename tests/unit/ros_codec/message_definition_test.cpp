@@ -7,10 +7,7 @@
 namespace rtd::ros {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::SizeIs;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 using Kind = MessageField::Kind;
 
 constexpr char kOdometry[] = R"(# An estimate

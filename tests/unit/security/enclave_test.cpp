@@ -1,9 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/security/enclave.hpp"
-
 #include <gmock/gmock.h>
 
+#include <fstream>
+
+#include "common/bus/topic_roles.hpp"
+#include "common/security/enclave.hpp"
+#include "common/security/permissions.hpp"
 #include "tests/unit/security/sample_keystore.hpp"
 
 namespace rtd::security {
@@ -38,45 +41,39 @@ TEST_F(EnclaveTest, says_that_there_is_no_keystore) {
               AllOf(HasSubstr("there is none"), HasSubstr("rtd keystore create")));
 }
 
-TEST_F(EnclaveTest, a_missing_enclave_names_the_existing_ones) {
-  EXPECT_THAT(refusal(create("k"), "/c"), AllOf(HasSubstr("no enclave /c, only /a /b"), HasSubstr("rtd keystore add")));
-}
-
 TEST_F(EnclaveTest, names_the_file_that_is_missing) {
   const std::string keystore = create("k");
   fs::remove(keystore + "/enclaves/a/key.pem");
   EXPECT_THAT(refusal(keystore), AllOf(HasSubstr("a/key.pem"), HasSubstr("No such file")));
 }
 
-TEST_F(EnclaveTest, expired_names_the_day_and_the_fix) {
-  EXPECT_THAT(refusal(create("k"), "/a", 0, kNow_s + 6 * kDay_s),
+TEST_F(EnclaveTest, other_times_domains_and_names_are_refused_with_the_fix) {
+  const std::string keystore = create("k", {3, 3});
+  EXPECT_THAT(refusal(keystore, "/a", 3, kNow_s + 6 * kDay_s),
               AllOf(HasSubstr("expired on 2027-01-20T08:00:00"), HasSubstr("rtd keystore renew")));
+  EXPECT_THAT(refusal(keystore, "/a", 3, kNow_s - 6 * kDay_s), HasSubstr("clock"));
+  EXPECT_THAT(refusal(keystore, "/a", 4), HasSubstr("may join domains 3..3, not 4"));
+  EXPECT_THAT(refusal(keystore, "/c", 3), AllOf(HasSubstr("no enclave /c, only /a /b"), HasSubstr("rtd keystore add")));
 }
 
-TEST_F(EnclaveTest, not_valid_yet_asks_for_the_clock) {
-  EXPECT_THAT(refusal(create("k"), "/a", 0, kNow_s - 6 * kDay_s), HasSubstr("clock"));
-}
-
-TEST_F(EnclaveTest, another_domain_is_refused) {
-  EXPECT_THAT(refusal(create("k", {3, 3}), "/a", 4), HasSubstr("may join domains 3..3, not 4"));
-}
-
-TEST_F(EnclaveTest, a_certificate_of_another_ca_is_refused) {
-  const std::string keystore = create("k"), rogue = create("rogue");
-  replace(rogue + "/enclaves/a/cert.pem", keystore + "/enclaves/a/cert.pem");
-  EXPECT_THAT(refusal(keystore), HasSubstr("not issued by the CA"));
-}
-
-TEST_F(EnclaveTest, a_key_that_is_not_the_certificates_is_refused) {
-  const std::string keystore = create("k");
-  replace(keystore + "/enclaves/b/key.pem", keystore + "/enclaves/a/key.pem");
-  EXPECT_THAT(refusal(keystore), HasSubstr("is not the key of"));
-}
-
-TEST_F(EnclaveTest, permissions_of_another_enclave_are_refused) {
-  const std::string keystore = create("k");
-  replace(keystore + "/enclaves/b/permissions.p7s", keystore + "/enclaves/a/permissions.p7s");
-  EXPECT_THAT(refusal(keystore), HasSubstr("is for CN=/b, the certificate next to it for CN=/a"));
+/// A file of the keystore, what takes its place, and the words of the refusal.
+TEST_F(EnclaveTest, files_of_others_are_refused) {
+  using Row = std::array<std::string, 3>;
+  for (const auto& [file, other, words] :
+       {Row{"enclaves/a/cert.pem", "rogue/enclaves/a/cert.pem", "not issued by the CA"},
+        Row{"enclaves/a/key.pem", "k/enclaves/b/key.pem", "is not the key of"},
+        Row{"enclaves/a/permissions.p7s", "k/enclaves/b/permissions.p7s",
+            "is for CN=/b, the certificate next to it for CN=/a"},
+        Row{"enclaves/governance.p7s", "rogue/enclaves/governance.p7s", "not signed by"}}) {
+    for (const char* name : {"k", "rogue"}) fs::remove_all(scratch_ / name);
+    const std::string keystore = create("k");
+    create("rogue");
+    replace((scratch_ / other).string(), keystore + "/" + file);
+    EXPECT_THAT(refusal(keystore), HasSubstr(words)) << file;
+    if (file.ends_with("governance.p7s")) {
+      EXPECT_THAT(refusal(keystore), HasSubstr("governance.p7s"));
+    }
+  }
 }
 
 TEST_F(EnclaveTest, edited_permissions_are_refused) {
@@ -87,10 +84,61 @@ TEST_F(EnclaveTest, edited_permissions_are_refused) {
   EXPECT_THAT(refusal(keystore), HasSubstr("is not signed by CN=rtdCA"));
 }
 
-TEST_F(EnclaveTest, a_governance_that_another_ca_signed_is_refused) {
-  const std::string keystore = create("k"), rogue = create("rogue");
-  replace(rogue + "/enclaves/governance.p7s", keystore + "/enclaves/governance.p7s");
-  EXPECT_THAT(refusal(keystore), AllOf(HasSubstr("governance.p7s"), HasSubstr("not signed by")));
+TEST(PermissionsTest, survive_xml) {
+  const Permissions written{"CN=/rtd/slam", {1'000'000'000, 2'000'000'000}, {4, 9}, {{"rt/tf", "rt/a/*"}, {"rtd/b"}}};
+  const Permissions read = permissions_from_xml(to_xml(written), "test");
+  EXPECT_EQ(read.subject, written.subject);
+  EXPECT_EQ(read.validity.not_before_s, written.validity.not_before_s);
+  EXPECT_EQ(read.validity.not_after_s, written.validity.not_after_s);
+  EXPECT_EQ(read.domains.first, 4);
+  EXPECT_EQ(read.domains.last, 9);
+  EXPECT_EQ(read.topics.publish, written.topics.publish);
+  EXPECT_EQ(read.topics.subscribe, written.topics.subscribe);
+}
+
+TEST(PermissionsTest, what_is_not_a_permissions_document_is_refused_with_its_name) {
+  for (const char* xml : {"", "<dds", "<dds/>", "<dds><permissions><grant/></permissions></dds>"}) {
+    try {
+      permissions_from_xml(xml, "file.xml");
+      ADD_FAILURE() << xml;
+    } catch (const SecurityError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("file.xml"));
+    }
+  }
+}
+
+TEST(PermissionsTest, roles_may_do_what_they_need_and_no_more) {
+  const auto may = [](const char* role, const char* topic) {
+    const bus::RoleTopics topics = bus::topics_of(role);
+    return std::pair(matches_any(topics.writes, topic), matches_any(topics.reads, topic));
+  };
+  EXPECT_EQ(may("camera", "rtd/frame"), std::pair(true, false));
+  EXPECT_EQ(may("slam", "rtd/frame"), std::pair(false, false));
+  EXPECT_EQ(may("slam", "rt/slam/odometry"), std::pair(true, false));
+  EXPECT_EQ(may("observer", "rt/slam/odometry"), std::pair(false, true));
+  EXPECT_EQ(may("observer", "rtd/frame"), std::pair(false, false));
+  EXPECT_EQ(may("launcher", "rtd/status"), std::pair(false, true));
+  EXPECT_EQ(may("record", "rt/anything"), std::pair(false, true));
+  EXPECT_EQ(may("atlas", "rtd/keyframe_features"), std::pair(false, true));
+  EXPECT_EQ(may("atlas", "rtd/map"), std::pair(false, true)) << "it cannot speak for a robot";
+  EXPECT_EQ(may("slam", "rtd/submap"), std::pair(false, true)) << "nor a robot for the atlas";
+  EXPECT_EQ(may("observer", "rtd/atlas"), std::pair(false, true));
+  for (const char* caller : {"call", "viewer"}) {
+    EXPECT_EQ(may(caller, "rq/recorder/stopRequest"), std::pair(true, false)) << caller;
+    EXPECT_EQ(may(caller, "rr/recorder/stopReply"), std::pair(false, true)) << caller;
+  }
+  EXPECT_EQ(may("record", "rq/recorder/stopRequest"), std::pair(false, true));
+  EXPECT_EQ(may("record", "rr/recorder/stopReply"), std::pair(true, false));
+  for (const char* topic : {"rq/recorder/stopRequest", "rr/recorder/stopReply"})
+    EXPECT_EQ(may("observer", topic), std::pair(false, false)) << "neither calls nor answers in another's name";
+  EXPECT_EQ(may("observer", "rq/my_node/get_parametersRequest"), std::pair(false, true));
+}
+
+TEST(PermissionsTest, only_the_frames_are_not_encrypted) {
+  const std::string xml = to_xml(Governance{{}, {"rtd/frame"}});
+  EXPECT_LT(xml.find("<topic_expression>rtd/frame<"), xml.find("<topic_expression>*<"));
+  EXPECT_LT(xml.find("<data_protection_kind>NONE"), xml.find("<data_protection_kind>ENCRYPT"));
+  EXPECT_THAT(xml, HasSubstr("<allow_unauthenticated_participants>false<"));
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "common/bus/commands.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
 #include "tests/support/test_domain.hpp"

@@ -1,25 +1,29 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/slam/slam_messages.hpp"
-
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <map>
 
+#include "common/geometry/pose_list.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/msg/largest_sample.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "common/service/config.hpp"
 #include "services/slam/config.hpp"
+#include "services/slam/map_keeper.hpp"
+#include "services/slam/slam_messages.hpp"
 
 namespace rtd::slam {
 namespace {
 
 using geometry::Vector6d;
 using ::testing::HasSubstr;
+using testing::SizeIs;
 using ::testing::ThrowsMessage;
 
 const FrameNames kNames{"map", "odom", "camera", "previous_map"};
@@ -205,6 +209,22 @@ TEST(SlamConfig, refuses_a_vocabulary_that_is_missing_or_damaged) {
   config.vocabulary_file = testing::TempDir() + "rtd_damaged.vocabulary";
   std::ofstream(config.vocabulary_file) << "RTDVOC01 and then something else";
   EXPECT_THAT([&] { core_config(config); }, ThrowsMessage<service::ConfigError>(HasSubstr("rtd-train-vocabulary")));
+}
+
+TEST(RunFiles, a_trajectory_whose_stamps_go_back_has_a_file_for_each_segment) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("rtd_run_files_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  std::vector<StampedPose> poses;
+  for (const std::int64_t second : {1, 2, 3, 1, 2}) poses.push_back({second * 1'000'000'000, {}});
+  for (StampedPose& pose : poses) pose.T_world_body.setIdentity();
+  write_trajectory(poses, folder / "trajectory");
+  EXPECT_THAT(geometry::read_pose_list(std::filesystem::path(folder / "trajectory.txt")).poses, SizeIs(3));
+  EXPECT_THAT(geometry::read_pose_list(std::filesystem::path(folder / "trajectory_segment_2.txt")).poses, SizeIs(2));
+  EXPECT_FALSE(std::filesystem::exists(folder / "trajectory_segment_3.txt"));
+  write_trajectory({}, folder / "none");
+  EXPECT_TRUE(std::filesystem::exists(folder / "none.txt")) << "empty, but there";
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -18,11 +18,7 @@ namespace {
 
 using rtd::test::BagWriter;
 using rtd::test::TemporaryFile;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::StartsWith;
+using namespace ::testing;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr char kReading[] =

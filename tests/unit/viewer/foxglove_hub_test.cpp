@@ -14,11 +14,7 @@ namespace {
 
 using foxglove::Schema;
 using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
+using namespace ::testing;
 
 const Schema kSchema{"cdr", "std_msgs/msg/String", "ros2msg", "string data"};
 

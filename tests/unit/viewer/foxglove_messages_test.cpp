@@ -11,10 +11,7 @@ namespace rtd::viewer::foxglove {
 namespace {
 
 using nlohmann::json;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 std::vector<int> numbers(const Bytes& bytes) {
   std::vector<int> values;

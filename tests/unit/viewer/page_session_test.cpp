@@ -13,11 +13,7 @@ namespace rtd::viewer {
 namespace {
 
 using nlohmann::json;
-using ::testing::Contains;
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using ::testing::Key;
-using ::testing::Not;
+using namespace ::testing;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 

@@ -1,7 +1,5 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/viewer/core/robot_mirror.hpp"
-
 #include <gmock/gmock.h>
 #include <malloc.h>
 
@@ -12,12 +10,16 @@
 #include <nlohmann/json.hpp>
 
 #include "services/viewer/core/page_messages.hpp"
+#include "services/viewer/core/robot_mirror.hpp"
+#include "services/viewer/robot_feed.hpp"
 #include "tests/support/sanitizers.hpp"
 
 namespace rtd::viewer {
 namespace {
 
 using nlohmann::json;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 json text(const Payload& payload) {
   return json::parse(reinterpret_cast<const char*>(payload->data()),
@@ -290,6 +292,19 @@ TEST(RobotMirror, memory_is_level_after_five_minutes_of_an_hour_at_30_hz) {
   }
   EXPECT_LT(allocated(), after_five_minutes + 5'000'000);
   EXPECT_EQ(mirror.map().trajectory().size(), static_cast<std::size_t>(kFrames)) << "the whole path is shown";
+}
+
+TEST(ShownRobots, are_those_with_topics_of_their_own) {
+  EXPECT_THAT(shown_robots({"rtd/anna/status", "rt/bert/slam/odometry", "rtd/status"}), ElementsAre("anna", "bert"));
+  EXPECT_THAT(shown_robots({"rtd/status", "rtd/frame"}), ElementsAre(""));
+  EXPECT_THAT(shown_robots({"rtd/anna/status", "rtd/atlas", "rt/atlas/points"}), ElementsAre("anna"));
+  EXPECT_THAT(shown_robots({"rr/recorder/startReply", "rtd/anna/status"}), ElementsAre("", "anna"));
+}
+
+TEST(ShownRobots, the_viewer_itself_and_shared_topics_are_no_robot) {
+  EXPECT_THAT(shown_robots({}), IsEmpty());
+  EXPECT_THAT(shown_robots({"rtd/status", "rtd/schemas", "rt/tf", "rt/diagnostics", "rt/camera/color/image_raw"}),
+              IsEmpty());
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "services/evaluation/core/plot/chart.hpp"
 #include "tests/bench/rtd_bench/detector/detector_bench.hpp"

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <map>
 #include <memory>
-#include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
 #include <utility>

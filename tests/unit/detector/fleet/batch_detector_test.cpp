@@ -14,10 +14,7 @@
 namespace rtd::detector {
 namespace {
 
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
-using ::testing::SizeIs;
+using namespace ::testing;
 
 class BatchDetectorTest : public ::testing::Test {
  protected:

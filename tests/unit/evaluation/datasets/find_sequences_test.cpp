@@ -10,11 +10,7 @@ namespace rtd::eval {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::Field;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using namespace ::testing;
 using testing_support::DatasetFolder;
 
 auto is_left_out(const std::string& folder, const std::string& reason) {

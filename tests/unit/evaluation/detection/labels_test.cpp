@@ -7,11 +7,7 @@
 namespace rtd::eval {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::SizeIs;
+using namespace ::testing;
 
 constexpr ImageSize kImage{200, 100};
 const std::vector<std::string> kNames = {"person", "chair"};

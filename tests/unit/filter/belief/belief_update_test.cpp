@@ -1,8 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/belief/static_probability.hpp"
-
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "services/filter/core/belief/static_probability.hpp"
+#include "tests/unit/filter/grid_scenes.hpp"
 
 namespace rtd::filter {
 namespace {
@@ -137,6 +141,97 @@ TEST(ObjectsOnCells, let_the_higher_level_win_and_leave_pictures_out) {
                                    {"tv", 0.9F, MotionLevel::kLow, {0, 1, 2, 3}, false},
                                    {"person", 0.9F, MotionLevel::kHigh, {3, 4}, true}};
   EXPECT_EQ(objects_on_cells({5, 1}, objects), (std::vector<std::int16_t>{1, 0, 0, 1, -1}));
+}
+
+constexpr std::size_t kGridCells = 1200;
+const std::vector<int> kObject{10, 11, 12, 13};
+
+/// Features on an object that has shifted, with 1 px of noise each, and as many beside it that rest.
+FeatureVotes shifted_by(float x_px, int features) {
+  std::mt19937 random(7);
+  std::normal_distribution<float> noise_px(0, 1);
+  FeatureVotes votes;
+  for (int i = 0; i < features; ++i) {
+    votes.shifts.push_back(
+        {kObject[static_cast<std::size_t>(i) % kObject.size()], x_px + noise_px(random), noise_px(random)});
+    votes.shifts.push_back({500, noise_px(random), noise_px(random)});
+  }
+  return votes;
+}
+bool moves(const FeatureVotes& votes) {
+  return drifts(drift_of(kObject, votes, kGridCells), BeliefConfig{});
+}
+
+TEST(ObjectDrift, is_more_precise_than_the_shift_of_one_feature) {
+  const ObjectDrift drift = drift_of(kObject, shifted_by(3, 100), kGridCells);
+  EXPECT_EQ(drift.features, 100);
+  EXPECT_NEAR(drift.shift_px, 3, 0.4);
+  EXPECT_NEAR(drift.sigma_px, std::sqrt(2 * 1.57 / 100), 0.05) << "two axes";
+}
+
+TEST(ObjectDrift, distinguishes_a_shift_of_three_pixels_from_rest) {
+  EXPECT_TRUE(moves(shifted_by(3, 100)));
+  EXPECT_FALSE(moves(shifted_by(0, 100)));
+  EXPECT_FALSE(moves(shifted_by(1.4F, 100))) << "the pose may be off so far";
+}
+
+TEST(ObjectDrift, makes_no_statement_about_few_features_or_none) {
+  EXPECT_FALSE(moves(shifted_by(5, 8)));
+  EXPECT_FALSE(moves({}));
+}
+
+TEST(ObjectDrift, does_not_take_waving_arms_for_the_person) {
+  FeatureVotes votes = shifted_by(0, 100);
+  for (std::size_t i = 0; i < 60; i += 2) votes.shifts[i].x_px += 10;
+  EXPECT_FALSE(moves(votes));
+}
+
+/// A wall parallel to the image, and what was believed of it.
+class SurfaceBeliefsTest : public ::testing::Test {
+ protected:
+  DepthGrid wall(double depth_m) { return sampler_.sample(test::wall_image(depth_m)); }
+  CellBeliefs recall(const DepthGrid& now, const Eigen::Isometry3d& T_last_current = Eigen::Isometry3d::Identity()) {
+    return beliefs_.recall(now, sampler_.rays(), camera_, T_last_current);
+  }
+  const geometry::CameraModel camera_ = test::wall_image().camera;
+  DepthGridSampler sampler_ = test::make_sampler();
+  SurfaceBeliefs beliefs_;
+};
+
+TEST(LogOdds, adds_up_and_returns) {
+  EXPECT_FLOAT_EQ(log_odds(0.5), 0);
+  EXPECT_NEAR(probability(log_odds(0.1)), 0.1, 1e-6);
+  EXPECT_TRUE(std::isfinite(log_odds(0)));
+  EXPECT_TRUE(std::isfinite(log_odds(1)));
+}
+
+TEST_F(SurfaceBeliefsTest, follow_a_wall_that_the_camera_passes) {
+  const DepthGrid at_2_m = wall(2.0);
+  CellBeliefs stored(at_2_m.depth_m.size(), -1.0F);
+  const int spot = at_2_m.shape.index(80, 60);
+  stored[static_cast<std::size_t>(spot)] = 3.0F;
+  beliefs_.store(at_2_m, stored);
+  Eigen::Isometry3d T_last_current = Eigen::Isometry3d::Identity();
+  T_last_current.translation().x() = 2.0 * 5 * kCellPx / camera_.parameters().fx;  // five cells to the right
+  const CellBeliefs recalled = recall(at_2_m, T_last_current);
+  EXPECT_FLOAT_EQ(recalled[static_cast<std::size_t>(spot - 5)], 3.0F);
+  EXPECT_FLOAT_EQ(recalled[static_cast<std::size_t>(spot)], -1.0F);
+  EXPECT_FALSE(is_known(recalled[static_cast<std::size_t>(at_2_m.shape.index(158, 60))])) << "was not in view";
+}
+
+TEST_F(SurfaceBeliefsTest, are_not_inherited_by_what_steps_in_front) {
+  const DepthGrid far = wall(3.0);
+  beliefs_.store(far, CellBeliefs(far.depth_m.size(), 4.0F));
+  EXPECT_TRUE(is_known(recall(far)[5000]));
+  EXPECT_FALSE(is_known(recall(wall(1.5))[5000]));
+}
+
+TEST_F(SurfaceBeliefsTest, are_none_before_the_first_frame_and_after_another_camera) {
+  const DepthGrid now = wall(2.0);
+  EXPECT_FALSE(is_known(recall(now)[0]));
+  const DepthGrid small{{2, 2}, std::vector<float>(4, 2.0F), std::vector<float>(4, 2.0F), std::vector<float>(4, 2.0F)};
+  beliefs_.store(small, CellBeliefs(4, 1.0F));
+  EXPECT_FALSE(is_known(recall(now)[0]));
 }
 
 }  // namespace

@@ -1,17 +1,17 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/filter/core/orb/brief.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <random>
 #include <set>
 #include <vector>
 
 #include "common/vision/features.hpp"
+#include "services/filter/core/orb/brief.hpp"
 #include "services/filter/core/orb/corners.hpp"
+#include "services/filter/core/orb/shrink.hpp"
 #include "tests/unit/filter/orb/test_images.hpp"
 
 namespace rtd::filter {
@@ -166,6 +166,42 @@ TEST(Orientation, is_that_of_the_sums_over_the_disc) {
 
 TEST(Orientation, of_a_flat_patch_is_zero) {
   EXPECT_EQ(centroid_angle_rad(cv::Mat(61, 61, CV_8UC1, cv::Scalar(90)), {30, 30}), 0.0F);
+}
+
+TEST(Shrink, gives_the_pixels_of_opencv) {
+  cv::theRNG().state = 11;
+  for (const cv::Size size :
+       {cv::Size(640, 480), cv::Size(333, 61), cv::Size(40, 40), cv::Size(17, 9), cv::Size(5, 5)}) {
+    cv::Mat image(size, CV_8UC1), expected, found;
+    cv::randu(image, 0, 256);
+    for (const double scale : {1.01, 1.05, 1.2, 1.3, 1.5, 1.79, 1.8, 2.0, 2.5, 0.9}) {
+      const cv::Size smaller(static_cast<int>(std::lround(size.width / scale)),
+                             static_cast<int>(std::lround(size.height / scale)));
+      cv::resize(image, expected, smaller, 0, 0, cv::INTER_LINEAR);
+      shrink(image, smaller, found);
+      ASSERT_EQ(found.size(), smaller);
+      EXPECT_EQ(cv::norm(expected, found, cv::NORM_INF), 0) << size << " by " << scale;
+    }
+  }
+}
+
+TEST(Smoothing, gives_the_pixels_of_opencv) {
+  cv::theRNG().state = 3;
+  for (const cv::Size size : {cv::Size(640, 480), cv::Size(77, 45), cv::Size(7, 7), cv::Size(4, 90)}) {
+    cv::Mat grey(size, CV_8UC1), expected, smoothed;
+    cv::randu(grey, 0, 256);
+    cv::GaussianBlur(grey, expected, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
+    smooth(grey, smoothed);
+    EXPECT_EQ(cv::norm(expected, smoothed, cv::NORM_INF), 0) << size;
+  }
+}
+
+TEST(Smoothing, keeps_black_and_white) {
+  cv::Mat smoothed;
+  for (const int grey : {0, 255}) {
+    smooth(cv::Mat(50, 60, CV_8UC1, cv::Scalar(grey)), smoothed);
+    EXPECT_EQ(cv::countNonZero(smoothed != grey), 0);
+  }
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // What tracking makes of an IMU while there is nothing, or something wrong, to see.
-#include <gmock/gmock.h>
+
+#include <gtest/gtest.h>
 
 #include <cmath>
 
