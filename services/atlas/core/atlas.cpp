@@ -161,7 +161,7 @@ void Atlas::give_way(KeyframeId newest) {
     too_many = sources_.size() - most + most / 100;  // at once: to find them takes long
     for (const auto& [id, source] : sources_) oldest.emplace_back(seen_s(id), id);
   } else if (cell.size() > static_cast<std::size_t>(config_.cell_keyframes)) {
-    too_many = 1;
+    too_many = cell.size() - static_cast<std::size_t>(config_.cell_keyframes);  // more where worlds were joined
     for (const KeyframeId id : cell) oldest.emplace_back(seen_s(id), id);
   }
   std::ranges::partial_sort(oldest, oldest.begin() + static_cast<std::ptrdiff_t>(too_many));

@@ -152,13 +152,20 @@ TEST(Atlas, keyframes_of_a_robot_whose_clock_is_days_ahead_give_way_too) {
   AtlasConfig config;
   config.cell_keyframes = 1;
   config.settled_after = 0;
-  Atlas atlas(config);
+  Atlas atlas(config), restarted(config);
   AtlasRobot ahead("ahead", world, 0), later("later", world, 600);
   ahead.teller().clock_behind_ns = -kDaysNs;
   ahead.walk(300, atlas);
+  restarted.restore(atlas.contents(), atlas.owners());
+  ahead.teller().forget_reported();
+  ahead.teller().report(restarted);
   const std::uint32_t alone = robot_in(atlas.state(), "ahead").keyframes;
+  ASSERT_EQ(robot_in(restarted.state(), "ahead").keyframes, alone);
   later.walk(600, atlas);
+  later.teller().forget_reported();
+  later.walk(400, restarted);
   EXPECT_LT(robot_in(atlas.state(), "ahead").keyframes, alone);
+  EXPECT_LT(robot_in(restarted.state(), "ahead").keyframes, alone) << "also those that were restored";
 }
 
 TEST(Atlas, what_is_beyond_the_most_keyframes_is_not_asked_for_again) {
