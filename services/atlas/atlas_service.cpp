@@ -11,7 +11,6 @@
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "services/slam/map_file.hpp"
 #include "services/slam/slam_messages.hpp"
 
 namespace rtd::atlas {
@@ -44,7 +43,7 @@ AtlasService::AtlasService(const Config& config, service::Runtime& runtime)
     : config_(config),
       runtime_(runtime),
       atlas_(config.core),
-      maps_(config.maps_folder, {"map", ".rtdmap", slam::map_format::kMagic, "--maps-dir"}),
+      maps_(maps_in(config.maps_folder)),
       state_writer_(runtime.bus.writer(bus::topics::kAtlas)),
       poses_writer_(runtime.bus.writer(bus::topics::kAtlasRobots)),
       points_writer_(runtime.bus.writer(bus::topics::kAtlasPoints)),

@@ -108,6 +108,7 @@ class AtlasService {
   void read_floor_plan(const std::string& robot, Lane& lane, bool wanted);
   void publish_floor_plan();
   void report(const msg::AtlasState& state);
+  static io::NamedFiles maps_in(const std::string& folder);
   void load_at_start();
   void load(const std::string& file);
   bus::CommandAnswer save(const std::string& file, io::NamedBy named_by);

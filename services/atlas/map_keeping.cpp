@@ -40,6 +40,10 @@ std::map<std::string, std::vector<KeyframeId>> read_owners(const std::string& ma
 
 }  // namespace
 
+io::NamedFiles AtlasService::maps_in(const std::string& folder) {
+  return {folder, {"map", ".rtdmap", slam::map_format::kMagic, "--maps-dir"}};
+}
+
 void AtlasService::load_at_start() {
   if (config_.map_file.empty() || !std::filesystem::exists(config_.map_file)) return;
   try {

@@ -44,8 +44,13 @@ class AtlasServiceTest : public test_support::ServiceFixture<AtlasService> {
   void let_them_meet() {
     start(service::Pace::kRealtime);
     anna_.emplace(*bus_, "anna", world_, 0);
-    bert_.emplace(*bus_, "bert", world_, 250);
     anna_->walk(200);
+    // Those of bert are found at places that are there: hers are too few to be found at his.
+    ASSERT_TRUE(atlas_.wait([](const auto& all) {
+      return !all.empty() && !all.back()->robots.empty() && all.back()->robots[0].keyframes > 0 &&
+             all.back()->robots[0].missing == 0;
+    }));
+    bert_.emplace(*bus_, "bert", world_, 250);
     bert_->walk(200);
     ASSERT_TRUE(atlas_.wait([](const auto& all) {
       return !all.empty() && all.back()->robots.size() == 2 &&
