@@ -87,7 +87,10 @@ class PlaceSeeker {
   FirstPose first_;
 };
 
-Walked walk(const TrialRobot& robot, const OfflineOptions& options, atlas::Atlas& atlas, TrialResult::Robot& entry) {
+/// `hour` of the trial: stamps of sources may be of any day, but a robot that walks later has seen things later.
+Walked walk(const TrialRobot& robot, std::int64_t hour, const OfflineOptions& options, atlas::Atlas& atlas,
+            TrialResult::Robot& entry) {
+  constexpr std::int64_t kHourNs = 3'600'000'000'000;
   constexpr int kReportEvery = 15;
   OfflineOptions own = options;
   own.source = robot.source;
@@ -96,7 +99,10 @@ Walked walk(const TrialRobot& robot, const OfflineOptions& options, atlas::Atlas
   std::optional<AtlasTeller> teller;
   PlaceSeeker seeker(atlas, entry);
   int frames = 0;
-  own.on_start = [&](slam::SlamSystem& slam) { teller.emplace(robot.name, slam); };
+  own.on_start = [&](slam::SlamSystem& slam) {
+    teller.emplace(robot.name, slam);
+    teller->clock_behind_ns = hour * kHourNs;
+  };
   own.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
     if (frames % kReportEvery == 0) seeker.look(frame, features);
   };
@@ -147,7 +153,7 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
   for (const TrialRobot& robot : robots) {
     TrialResult::Robot& entry = result.robots.emplace_back();
     entry.name = robot.name;
-    walks.push_back(walk(robot, options, atlas, entry));
+    walks.push_back(walk(robot, std::ssize(walks), options, atlas, entry));
   }
   judge(atlas.state(), walks, result);
   result.counters = atlas.counters();

@@ -132,7 +132,6 @@ TEST_F(FrontTest, what_is_wrong_is_exit_code_2_with_the_fix) {
   const std::pair<std::vector<std::string>, std::vector<std::string>> wrong[] = {
       {{"ehco"}, {"'ehco' is not an rtd command, did you mean 'echo'?"}},
       {{"topics", "list"}, {"--target rtd-topics"}},
-      {{"demo", "--dataset", "holiday_video"}, {"fr3_walking_xyz"}},
       {run_with("--detector", "remote"), {"--profile lan"}},
       {run_with("--profile", "lna"), {"lan, localhost, secure, wifi"}},
       {run_with("--model", "/no/such.onnx"), {"/no/such.onnx"}},

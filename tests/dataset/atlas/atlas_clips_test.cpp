@@ -43,7 +43,7 @@ TEST(AtlasClips, rooms_that_look_alike_are_not_taken_for_one) {
   for (std::size_t i = 1; i < robots.size(); ++i) EXPECT_FALSE(result.robots[i].met) << robots[i].name;
 }
 
-/// Sides of a corridor that are the same to the last pixel: nothing but the way walked tells them apart.
+/// Sides of a corridor that are the same to the last pixel: only the way walked distinguishes them.
 TEST(AtlasClips, sides_of_a_corridor_that_are_the_same_join_no_robots) {
   OfflineOptions options;
   options.front_end.mode = "off";

@@ -292,14 +292,14 @@ TEST(Atlas, says_nothing_where_a_view_fits_two_places) {
   AtlasRobot anna("anna", world, 0);
   anna.walk(200, atlas);
   const std::vector<SentKeyframe> room = keyframes_of(anna);
-  Atlas twins({});
+  Atlas doubled({});
   Sender carl("carl");
-  carl.send(twins, room, Eigen::Isometry3d::Identity());
-  EXPECT_TRUE(twins.locate(query_of(*world.view(50))));
+  carl.send(doubled, room, Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(doubled.locate(query_of(*world.view(50))));
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.translation().x() = 30;
-  carl.send(twins, room, T);
-  EXPECT_FALSE(twins.locate(query_of(*world.view(50))));
+  carl.send(doubled, room, T);
+  EXPECT_FALSE(doubled.locate(query_of(*world.view(50))));
 }
 
 TEST(Atlas, one_wall_alike_in_rooms_that_differ_joins_no_robots) {
