@@ -162,10 +162,13 @@ TEST_F(SupervisorTest, the_end_of_the_source_and_a_refused_start_end_the_run) {
         Row{"camera", {0, 6}, RunOutcome::kFailed}, Row{"slam", {2, 0}, RunOutcome::kConfigError},
         Row{"slam", {4, 0}, RunOutcome::kConfigError}}) {  // 4: it runs already
     FakeHost alone;
-    Supervisor started{alone, SupervisorOptions{}, [](const auto&) {}};
+    Supervisor started{alone, {}, [](const auto& e) { EXPECT_THAT(e.text, Not(HasSubstr("SIGTERM"))); }};
     for (const char* name : {"slam", "camera"})
       started.start({name, {name}, *name == 's' ? ServiceRole::kEssential : ServiceRole::kSource}, now);
     alone.end(service, exit);
+    started.update(now);
+    started.stop(now, milliseconds(9000), outcome);
+    alone.end(*service == 's' ? "camera" : "slam", {0, SIGTERM});
     for (int i = 1; i < 8; ++i) started.update(now + i * milliseconds(400));
     EXPECT_EQ(started.outcome(), outcome) << service << exit.code << exit.signal;
     EXPECT_EQ(alone.started.size(), 2U) << "not tried again";

@@ -3,6 +3,7 @@
 #include "services/launcher/core/run/supervisor.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <utility>
 
 namespace rtd::launcher {
@@ -167,11 +168,13 @@ void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock n
   child.state = State::kEnded;
   if (stopping_) {
     const bool forced = child.killed;
+    process::ProcessExit ended = exit;
+    if (child.asked && exit.signal == SIGTERM) ended.signal = 0;  // asked before it handled signals
     report(forced ? SupervisorEvent::Kind::kKilled : SupervisorEvent::Kind::kEnded, child,
-           child.plan.name + (!forced           ? " ended: " + describe(exit)
+           child.plan.name + (!forced           ? " ended: " + describe(ended)
                               : child.work_done ? " had done its work, but its bus did not end: killed"
                                                 : " did not end when asked and was killed"),
-           exit);
+           ended);
     return;
   }
   const bool source = child.plan.role == ServiceRole::kSource || child.plan.role == ServiceRole::kLive;
