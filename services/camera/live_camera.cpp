@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "common/bus/host/host_checks.hpp"
+#include "common/bus/robot.hpp"
 #include "common/bus/topic_follower.hpp"
 #include "common/bus/topics.hpp"
 #include "common/concurrency/bounded_queue.hpp"
@@ -111,11 +112,12 @@ constexpr const char* kCompressed = "sensor_msgs/CompressedImage";
 constexpr const char* kInfo = "sensor_msgs/CameraInfo";
 constexpr const char* kTransform = "tf2_msgs/TFMessage";
 
-/// rtd's own images come from no camera.
+/// rtd's own images, those of any robot, come from no camera.
 bool is_ours(const std::string& dds_topic) {
   using namespace bus::topics;
-  return dds_topic == kColorJpeg.name || dds_topic == kPersonMasks.name || dds_topic == kDynamicMask.name ||
-         dds_topic == kDepthJpeg.name;
+  const std::string topic = bus::split_robot(dds_topic).topic;
+  return topic == kColorJpeg.name || topic == kPersonMasks.name || topic == kDynamicMask.name ||
+         topic == kDepthJpeg.name;
 }
 
 std::string plain_dds_type(const bus::RawTopic& topic) {
