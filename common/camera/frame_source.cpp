@@ -156,7 +156,7 @@ void PlayedSource::read_first(const std::string& file) {
 }
 
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
-                                          const geometry::CameraModel& camera) {
+                                          const geometry::CameraModel& camera, const std::string& more) {
   const cv::Size calibrated(camera.parameters().width, camera.parameters().height);
   if (color.size() == calibrated && depth.size() == calibrated) return std::nullopt;
   std::string turned;
@@ -164,8 +164,8 @@ std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat
     const auto& p = camera.parameters();
     turned = fmt::format(
         ". The images are those of the calibration turned by 90 degrees: give that of the turned image, clockwise "
-        "?intrinsics={:.6g},{:.6g},{:.6g},{:.6g}, else {:.6g},{:.6g},{:.6g},{:.6g}",
-        p.fy, p.fx, p.height - 1 - p.cy, p.cx, p.fy, p.fx, p.cy, p.width - 1 - p.cx);
+        "?intrinsics={:.6g},{:.6g},{:.6g},{:.6g}{}, else {:.6g},{:.6g},{:.6g},{:.6g}{}",
+        p.fy, p.fx, p.height - 1 - p.cy, p.cx, more, p.fy, p.fx, p.cy, p.width - 1 - p.cx, more);
   }
   return SkippedInput{SkipReason::kSizeMismatch, name + ": colour " + size_text(color.size()) + ", depth " +
                                                      size_text(depth.size()) + ", calibration " +

@@ -220,9 +220,10 @@ inline constexpr std::int64_t kGroundtruthMarginNs = 500'000'000;
 /// A moment has a true pose when one is known so near before and after it: some clips have one for each frame only.
 inline constexpr std::int64_t kTrueWithinNs = 50'000'000;
 
-/// Why colour, depth and calibration do not make a frame; empty when they do. `name` is the colour image's.
+/// Why colour, depth and calibration do not make a frame; empty when they do. `name` is the colour image's, `more` what
+/// the source needs besides other ?intrinsics=.
 std::optional<SkippedInput> size_mismatch(const std::string& name, const cv::Mat& color, const cv::Mat& depth,
-                                          const geometry::CameraModel& camera);
+                                          const geometry::CameraModel& camera, const std::string& more = {});
 
 /// The frame that a pair of images of one stamp makes; seq is given when it is handed out.
 SourceFrame to_frame(std::int64_t stamp_ns, cv::Mat color_bgr, cv::Mat depth, const SourceInfo& info);

@@ -372,7 +372,8 @@ std::optional<SourceFrame> FolderSource::decode() {
     if (color.image.size() == large_px_)
       cv::resize(color.image, color.image, size_of(info_.camera), 0, 0, cv::INTER_AREA);
     check_frame_size(color.image.cols, color.image.rows, (contents_.folder / pair.color.file).string());
-    problem = size_mismatch(pair.color.file, color.image, depth.image, info_.camera);
+    const std::string unit = info_.depth_unit_given ? fmt::format("&depth_factor={:.6g}", 1 / info_.depth_scale_m) : "";
+    problem = size_mismatch(pair.color.file, color.image, depth.image, info_.camera, unit);
   }
   if (problem) {
     skips_.add(*problem);

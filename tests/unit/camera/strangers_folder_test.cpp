@@ -183,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
                     FieldInput{"zstd_image_transport/a.mcap", "", 6},
                     FieldInput{"orbbec_viewer_bag/orbbec.bag", "", 0, {"/cam/sensor_3/frameType_3", "?registered=1"}},
                     FieldInput{"orbbec_viewer_bag/orbbec.bag", "?registered=1", 4},
-                    FieldInput{"portrait_images/seq", "", 0, {"turned by 90 degrees", "262,262,119.5,159.5"}},
+                    FieldInput{"portrait_images/seq", "", 0, {"turned by 90 degrees", "119.5,159.5&depth_factor=1000"}},
                     FieldInput{"rs_convert_coloured_depth/clip",
                                "?intrinsics=262,262,159.5,119.5",
                                0,
