@@ -44,8 +44,7 @@ constexpr std::array<SkipText, kSkipReasons> kSkipTexts{{
      "two cameras send on one topic, and only the first is followed: give each of them topics of its own, or stop one"},
     {"emitter_dots",
      "the infrared camera's emitter is switched on and off in turn: images with its dots are left out, as the dots "
-     "move "
-     "with the camera"},
+     "move with the camera"},
 }};
 
 }  // namespace

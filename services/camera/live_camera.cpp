@@ -236,9 +236,8 @@ std::string Ros2Feed::state_of(const std::string& topic) const {
 std::string Ros2Feed::without_publisher() const {
   std::set<std::string> images;
   for (const bus::TopicWriter& writer : bus_->writers()) {
-    const std::string type = plain_dds_type(writer.topic);
-    if (is_ours(writer.topic.name)) continue;
-    if (type == kImage || type == kCompressed) images.insert(ros2::ros_topic(writer.topic.name));
+    const std::string type = plain_dds_type(writer.topic), &name = writer.topic.name;
+    if ((type == kImage || type == kCompressed) && !is_ours(name)) images.insert(ros2::ros_topic(name));
   }
   const std::string where = fmt::format("it has no publisher in DDS domain {}", options_.domain);
   if (!images.empty()) return fmt::format("{}; images are published on {}", where, fmt::join(images, ", "));

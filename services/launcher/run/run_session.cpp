@@ -226,6 +226,7 @@ void RunSession::stop_when_decided(milliseconds time) {
 
 void RunSession::on_event(const SupervisorEvent& event) {
   using Kind = SupervisorEvent::Kind;
+  if (event.kind != Kind::kStarted && event.kind != Kind::kRestarted) usage_.add_exit(event.service, event.exit);
   switch (event.kind) {
     case Kind::kStarted:
       return;
@@ -233,19 +234,15 @@ void RunSession::on_event(const SupervisorEvent& event) {
       usage_.add_restart(event.service);
       return note(event.text + restart_effect(event.service));
     case Kind::kEnded:
-      usage_.add_exit(event.service, event.exit);
       if (!event.exit.clean()) note(event.text);
       return;
     case Kind::kKilled:
-      usage_.add_exit(event.service, event.exit);
       return note(event.text);
     case Kind::kRefused:
-      usage_.add_exit(event.service, event.exit);
       note(event.text);
       return explain(event.service, logs_.reason(event.service));
     case Kind::kDied:
     case Kind::kGivenUp:
-      usage_.add_exit(event.service, event.exit);
       if (!event.how.empty()) usage_.add_death(event.service, event.how);
       note(event.text);
       return explain(event.service, event.exit.signal == 0 ? logs_.reason(event.service) : logs_.tail(event.service));

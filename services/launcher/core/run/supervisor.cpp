@@ -167,15 +167,13 @@ void Supervisor::relaunch(Child& child, Clock now) {
 void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock now) {
   child.state = State::kEnded;
   if (stopping_) {
-    const bool forced = child.killed;
     process::ProcessExit ended = exit;
     if (child.asked && exit.signal == SIGTERM) ended.signal = 0;  // asked before it handled signals
-    report(forced ? SupervisorEvent::Kind::kKilled : SupervisorEvent::Kind::kEnded, child,
-           child.plan.name + (!forced           ? " ended: " + describe(ended)
-                              : child.work_done ? " had done its work, but its bus did not end: killed"
-                                                : " did not end when asked and was killed"),
-           ended);
-    return;
+    const std::string how = !child.killed     ? " ended: " + describe(ended)
+                            : child.work_done ? " had done its work, but its bus did not end: killed"
+                                              : " did not end when asked and was killed";
+    using Kind = SupervisorEvent::Kind;
+    return report(child.killed ? Kind::kKilled : Kind::kEnded, child, child.plan.name + how, ended);
   }
   const bool source = child.plan.role == ServiceRole::kSource || child.plan.role == ServiceRole::kLive;
   if (source && exit.clean()) {
