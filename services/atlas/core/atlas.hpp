@@ -172,7 +172,7 @@ class Atlas {
   bool is_near(KeyframeId a, KeyframeId b) const;
   bool is_plausible(KeyframeId keyframe, const slam::PlaceMeeting& meeting, double way_m) const;
   bool is_same(const slam::PlaceMeeting& meeting, const slam::PlaceMeeting& other) const;
-  bool is_borne_out(const std::string& name, const Meeting& meeting) const;
+  bool bear_out(const std::string& name, const Meeting& meeting, std::vector<Meeting>& agreeing) const;
   KeyframeId nearest_view(MapId world, const Eigen::Isometry3d& T_world_camera) const;
   void doubt_meetings_at(KeyframeId place);
   void accept(const std::string& name, Robot& robot, const Meeting& last, std::vector<Meeting> agreeing);

@@ -21,7 +21,7 @@ namespace {
 /// Views that differ by less may show the same things.
 constexpr double kNear_m = 2, kNear_rad = 1;
 /// Keyframes of which it is asked whether they bear out a meeting of two worlds, and how far from a keyframe there.
-constexpr int kMostAsked = 20;
+constexpr std::size_t kMostAsked = 20;
 constexpr double kBorneOut_m = 0.15, kBorneOut_rad = 0.1;
 constexpr double kLookedAt_m = 0.75, kLookedAt_rad = 0.5;
 
@@ -118,15 +118,16 @@ void Atlas::look_for_meeting(const std::string& name, Robot& robot, KeyframeId i
       agreeing.push_back(other);
   robot.undecided.push_back(meeting);
   if (robot.undecided.size() > kMostUndecided) robot.undecided.erase(robot.undecided.begin());
-  if (static_cast<int>(agreeing.size()) < config_.slam.loop.confirmations) return;
-  if (world_of(id) == world_of(meeting.place) || is_borne_out(name, meeting))
+  if (world_of(id) != world_of(meeting.place) && !bear_out(name, meeting, agreeing)) return;
+  if (static_cast<int>(agreeing.size()) >= config_.slam.loop.confirmations)
     accept(name, robot, meeting, std::move(agreeing));
 }
 
 /// Between two worlds: of the robot's keyframes that look at what the other world has seen too, half must find it.
-bool Atlas::is_borne_out(const std::string& name, const Meeting& meeting) const {
+/// Those that do agree with the meeting as well.
+bool Atlas::bear_out(const std::string& name, const Meeting& meeting, std::vector<Meeting>& agreeing) const {
   const MapId here = world_of(meeting.keyframe), there = world_of(meeting.place);
-  int looked = 0, found = 0;
+  std::size_t looked = 0, found = 0;
   for (const auto& [id, keyframe] : map_.keyframes() | std::views::reverse) {
     if (looked == kMostAsked) break;
     if (sources_.at(id).robot != name || world_of(id) != here) continue;
@@ -135,7 +136,12 @@ bool Atlas::is_borne_out(const std::string& name, const Meeting& meeting) const 
     if (place == kNoKeyframe) continue;
     ++looked;
     const auto met = slam::look_again(map_, *keyframe.frame, place, T_there_camera, config_.slam);
-    if (met && atlas::is_near(met->T_world_camera, T_there_camera, kBorneOut_m, kBorneOut_rad)) ++found;
+    if (!met || !atlas::is_near(met->T_world_camera, T_there_camera, kBorneOut_m, kBorneOut_rad)) continue;
+    ++found;
+    if (std::ranges::count(agreeing, id, &Meeting::keyframe) > 0) continue;
+    agreeing.push_back(
+        {met->place, id, map_.find_keyframe(met->place)->T_world_camera.inverse() * met->T_world_camera});
+    agreeing.back().T_new_old = met->T_world_camera * keyframe.T_world_camera.inverse();
   }
   return 2 * found >= looked;
 }
