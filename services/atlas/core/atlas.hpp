@@ -172,6 +172,7 @@ class Atlas {
   bool is_near(KeyframeId a, KeyframeId b) const;
   bool is_plausible(KeyframeId keyframe, const slam::PlaceMeeting& meeting, double way_m) const;
   bool is_same(const slam::PlaceMeeting& meeting, const slam::PlaceMeeting& other) const;
+  Meeting meeting_of(KeyframeId id, const slam::PlaceMeeting& met) const;
   bool bear_out(const std::string& name, const Meeting& meeting, std::vector<Meeting>& agreeing) const;
   KeyframeId nearest_view(MapId world, const Eigen::Isometry3d& T_world_camera) const;
   void doubt_meetings_at(KeyframeId place);

@@ -95,9 +95,14 @@ void Atlas::doubt_meetings_at(KeyframeId place) {
 bool Atlas::is_plausible(KeyframeId id, const slam::PlaceMeeting& meeting, double way_m) const {
   if (world_of(id) != world_of(meeting.place)) return true;
   const Eigen::Isometry3d T = map_.find_keyframe(id)->T_world_camera.inverse() * meeting.T_world_camera;
-  const slam::LoopConfig& loop = config_.slam.loop;
-  return T.translation().norm() <= loop.max_offset_m + loop.max_drift_ratio * way_m &&
-         geometry::rotation_angle_rad(T) <= loop.max_offset_rad + loop.max_drift_rad_m * way_m;
+  return slam::drift_explains(T, way_m, config_.slam.loop);
+}
+
+Atlas::Meeting Atlas::meeting_of(KeyframeId id, const slam::PlaceMeeting& met) const {
+  return {.place = met.place,
+          .keyframe = id,
+          .T_place_keyframe = map_.find_keyframe(met.place)->T_world_camera.inverse() * met.T_world_camera,
+          .T_new_old = met.T_world_camera * map_.find_keyframe(id)->T_world_camera.inverse()};
 }
 
 /// A meeting counts once enough keyframes of the robot ask for the same, wherever they are.
@@ -108,9 +113,7 @@ void Atlas::look_for_meeting(const std::string& name, Robot& robot, KeyframeId i
   const std::optional<slam::PlaceMeeting> met_place = meet(name, robot, id);
   if (!met_place) return;
   const Eigen::Isometry3d T_world_keyframe = map_.find_keyframe(id)->T_world_camera;
-  Meeting meeting{met_place->place, id,
-                  map_.find_keyframe(met_place->place)->T_world_camera.inverse() * met_place->T_world_camera};
-  meeting.T_new_old = met_place->T_world_camera * T_world_keyframe.inverse();
+  const Meeting meeting = meeting_of(id, *met_place);
   std::vector<Meeting> agreeing{meeting};
   for (const Meeting& other : robot.undecided)
     if (world_of(other.place) == world_of(meeting.place) && world_of(other.keyframe) == world_of(id) &&
@@ -139,9 +142,7 @@ bool Atlas::bear_out(const std::string& name, const Meeting& meeting, std::vecto
     if (!met || !atlas::is_near(met->T_world_camera, T_there_camera, kBorneOut_m, kBorneOut_rad)) continue;
     ++found;
     if (std::ranges::count(agreeing, id, &Meeting::keyframe) > 0) continue;
-    agreeing.push_back(
-        {met->place, id, map_.find_keyframe(met->place)->T_world_camera.inverse() * met->T_world_camera});
-    agreeing.back().T_new_old = met->T_world_camera * keyframe.T_world_camera.inverse();
+    agreeing.push_back(meeting_of(id, *met));
   }
   return 2 * found >= looked;
 }
@@ -332,6 +333,7 @@ void Atlas::trim_meetings() {
   for (const Join& join : joins_ | std::views::reverse)
     if (joined.emplace(join.older, join.newer).second || left.contains(join.meeting)) newest.push_back(join);
   joins_.assign(newest.rbegin(), newest.rend());
+  std::erase_if(doubts_, [&](const auto& doubt) { return !left.contains(doubt.first); });
 }
 
 std::set<std::uint64_t> Atlas::meeting_numbers() const {

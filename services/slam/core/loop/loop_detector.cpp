@@ -117,6 +117,11 @@ bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_
   return T.translation().norm() <= config.agreement_m && geometry::rotation_angle_rad(T) <= config.agreement_rad;
 }
 
+bool drift_explains(const Eigen::Isometry3d& T_old_new, double way_m, const LoopConfig& config) {
+  return T_old_new.translation().norm() <= config.max_offset_m + config.max_drift_ratio * way_m &&
+         geometry::rotation_angle_rad(T_old_new) <= config.max_offset_rad + config.max_drift_rad_m * way_m;
+}
+
 int fuse_place(Map& map, KeyframeId keyframe, const PlaceMeeting& meeting, int neighbours) {
   const std::vector<KeyframeId> here = with_neighbours(map, keyframe, neighbours);
   const std::vector<LandmarkId> there = landmarks_of(map, with_neighbours(map, meeting.place, neighbours));
@@ -160,17 +165,13 @@ std::optional<PlaceMeeting> LoopDetector::meet(const Map& map, const KeyframeDat
   return std::nullopt;
 }
 
-/// The correction must be one that drift can explain, docs/theory/loop_closing.md Eq. (1). Between two maps nothing is
-/// known.
+/// Between two maps nothing is known.
 bool LoopDetector::plausible(const Map& map, KeyframeId newest, const PlaceMeeting& meeting) const {
   const Keyframe& keyframe = *map.find_keyframe(newest);
   const Keyframe& place = *map.find_keyframe(meeting.place);
   if (place.map != keyframe.map) return true;
   const double way_m = keyframe.way_m - place.way_m;
-  const Eigen::Isometry3d T_old_new = keyframe.T_world_camera.inverse() * meeting.T_world_camera;
-  const LoopConfig& config = config_.loop;
-  return T_old_new.translation().norm() <= config.max_offset_m + config.max_drift_ratio * way_m &&
-         geometry::rotation_angle_rad(T_old_new) <= config.max_offset_rad + config.max_drift_rad_m * way_m;
+  return drift_explains(keyframe.T_world_camera.inverse() * meeting.T_world_camera, way_m, config_.loop);
 }
 
 /// Both keyframes imply the same correction of the newest one's pose, and of the same map.

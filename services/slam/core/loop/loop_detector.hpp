@@ -34,6 +34,9 @@ std::optional<PlaceMeeting> look_again(const Map& map, const Frame& frame, Keyfr
 bool agree(const Eigen::Isometry3d& T_new_old, const Eigen::Isometry3d& other_T_new_old,
            const Eigen::Isometry3d& T_old_camera, const LoopConfig& config);
 
+/// Whether a correction of a pose is one that drift on the way since can explain, docs/theory/loop_closing.md Eq. (1).
+bool drift_explains(const Eigen::Isometry3d& T_old_new, double way_m, const LoopConfig& config);
+
 /// Joins the landmarks of a keyframe and its neighbours with those of the place it was found at; both stand where they
 /// belong already. First those that the meeting found, then by projection. Returns how many landmarks were joined or
 /// gained an observation. docs/theory/loop_closing.md, "Fusion".
