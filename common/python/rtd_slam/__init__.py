@@ -52,6 +52,14 @@ class Pose:
     frame_id: str  # "map"
 
 
+def _pandas():
+    try:
+        import pandas
+    except ImportError as error:
+        raise ImportError("dataframe() needs pandas: apt install python3-pandas, or pip install pandas") from error
+    return pandas
+
+
 @dataclasses.dataclass(frozen=True, repr=False)
 class Poses:
     """N poses in order of time."""
@@ -88,8 +96,7 @@ class Poses:
 
     def dataframe(self):
         """A pandas.DataFrame, a row per pose: stamp_ns, x, y, z, qx, qy, qz, qw."""
-        import pandas
-
+        pandas = _pandas()
         columns = {"stamp_ns": self.stamp_ns, **dict(zip("xyz", self.position_m.T))}
         return pandas.DataFrame({**columns, **dict(zip(("qx", "qy", "qz", "qw"), self.orientation_xyzw.T))})
 
@@ -163,8 +170,7 @@ class Run:
 
     def dataframe(self):
         """`frames` as a pandas.DataFrame, a row per frame; columns of several numbers become name_0, name_1, ..."""
-        import pandas
-
+        pandas = _pandas()
         flat = {}
         for name, values in self.frames.items():
             if values.ndim == 1:

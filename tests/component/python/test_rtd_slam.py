@@ -52,6 +52,8 @@ class Trajectories(Folder):
             table = poses.dataframe()
         self.assertEqual(list(table), ["stamp_ns", "x", "y", "z", "qx", "qy", "qz", "qw"])
         self.assertEqual((table["z"][1], table["qw"][0]), (4, 1))
+        with unittest.mock.patch.dict(sys.modules, {"pandas": None}):
+            self.assertRaisesRegex(ImportError, "needs pandas: apt install", poses.dataframe)
 
     def test_comments_commas_and_a_byte_order_mark_are_taken(self):
         poses = rtd.read_poses(self.write("a.csv", "\ufeff# stamp x y z\n1.5,1,2,3,0,0,0,1\n"))
