@@ -150,6 +150,13 @@ void Atlas::sort_into_cells() {
     cells_[cell_of(world_of(id), keyframe.T_world_camera)].push_back(id);
 }
 
+/// Of a robot that is there, the last keyframes never go, whoever else comes by: they say where its map is.
+bool Atlas::may_go(KeyframeId id) const {
+  constexpr std::size_t kLast = 3;
+  const auto robot = robots_.find(sources_.at(id).robot);
+  return robot == robots_.end() || robot->second.here.size() > kLast;
+}
+
 /// Of one place the newest keyframes stay: what was there before has changed, or is said once more.
 void Atlas::give_way(KeyframeId newest) {
   const Keyframe& keyframe = *map_.find_keyframe(newest);
@@ -164,10 +171,14 @@ void Atlas::give_way(KeyframeId newest) {
     too_many = cell.size() - static_cast<std::size_t>(config_.cell_keyframes);  // more where worlds were joined
     for (const KeyframeId id : cell) oldest.emplace_back(seen_s(id), id);
   }
-  std::ranges::partial_sort(oldest, oldest.begin() + static_cast<std::ptrdiff_t>(too_many));
-  oldest.resize(too_many);
-  counters_.given_way += too_many;
-  for (const auto& [seen_s, id] : oldest) drop(id);
+  std::ranges::sort(oldest);
+  for (const auto& [seen_s, id] : oldest) {
+    if (too_many == 0) break;
+    if (!may_go(id)) continue;
+    drop(id);
+    --too_many;
+    ++counters_.given_way;
+  }
 }
 
 /// What met a keyframe that goes has met its heir.
@@ -181,6 +192,8 @@ void Atlas::hand_on_meetings(std::vector<Meeting>& meetings, KeyframeId id, Keyf
       meeting.T_place_keyframe = T_heir_keyframe * meeting.T_place_keyframe;
     } else if (meeting.keyframe == id) {
       meeting.keyframe = heir;
+      const geometry::Matrix6d Ad = geometry::adjoint(T_heir_keyframe);
+      meeting.covariance = Ad * meeting.covariance * Ad.transpose();
       meeting.T_place_keyframe = meeting.T_place_keyframe * T_heir_keyframe.inverse();
     }
   }

@@ -36,7 +36,9 @@ struct AtlasConfig {
   int look_every = 1;
   int settled_after = 5;
   int submap_keyframes = 12;
-  double meeting_sigma_m = 0.01, meeting_sigma_rad = 0.005;
+  double place_sigma_m = 0.015;
+  double meeting_sigma_m = 0.01, meeting_sigma_rad = 0.003;
+  double meeting_doubt = 3;
   double most_bend_m = 0.05, most_bend_share = 0.05;
 
   void bind(auto& binder) {
@@ -46,9 +48,12 @@ struct AtlasConfig {
     binder.field("look_every", look_every, {1, 1000}, "keyframes of a robot that has met the joint map, per search");
     binder.field("settled_after", settled_after, {0, 100}, "later keyframes, before one is asked for");
     binder.field("submap_keyframes", submap_keyframes, {1, 50}, "sent to a robot that asks where it is");
+    binder.field("place_sigma_m", place_sigma_m, {1e-4, 1.0}, "a place is found if its position is known so well");
     binder.field("meeting_sigma_m", meeting_sigma_m, {1e-4, 1.0},
-                 "standard deviation of a place that two keyframes share");
+                 "of a place that two keyframes share, besides what slam says: standard deviation of its position");
     binder.field("meeting_sigma_rad", meeting_sigma_rad, {1e-4, 1.0}, "the same for its rotation");
+    binder.field("meeting_doubt", meeting_doubt, {0.0, 100.0},
+                 "factor on the standard deviations that slam has: landmarks are wrong together, as their map is");
     binder.field("most_bend_m", most_bend_m, {0.0, 10.0},
                  "a meeting that changes another robot's motion by more than this and ...");
     binder.field("most_bend_share", most_bend_share, {0.0, 1.0}, "... this share of that motion is refused");
@@ -124,6 +129,7 @@ class Atlas {
   struct Meeting {
     KeyframeId place = slam::kNoKeyframe, keyframe = slam::kNoKeyframe;
     Eigen::Isometry3d T_place_keyframe = Eigen::Isometry3d::Identity();
+    geometry::Matrix6d covariance = geometry::Matrix6d::Zero();   ///< as of PoseGraphEdge
     std::uint64_t number = 0;                                     ///< of the confirmed meeting that it belongs to
     Eigen::Isometry3d T_new_old = Eigen::Isometry3d::Identity();  ///< what it does to the world of the keyframe
   };
@@ -182,6 +188,7 @@ class Atlas {
   Cell cell_of(MapId world, const Eigen::Isometry3d& T_world_camera) const;
   void sort_into_cells();
   std::vector<KeyframeId> around(KeyframeId place, const Eigen::Isometry3d& T_world_camera) const;
+  bool may_go(KeyframeId keyframe) const;
   void give_way(KeyframeId newest);
   void drop(KeyframeId keyframe);
   void trim_meetings();

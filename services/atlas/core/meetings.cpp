@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// Where the maps of robots meet, and the joint map that follows: docs/atlas.md.
 #include <algorithm>
+#include <cmath>
 #include <ranges>
 #include <set>
 
@@ -37,14 +38,16 @@ bool Atlas::is_near(KeyframeId a, KeyframeId b) const {
                                                       map_.find_keyframe(b)->T_world_camera, kNear_m, kNear_rad);
 }
 
-/// The first place among those admitted that the keyframe is found at.
+/// The first place among those admitted that the keyframe is found at, and can say where from.
 std::optional<slam::PlaceMeeting> Atlas::find_place(const slam::Frame& frame, const slam::BagOfWords& words,
                                                     const std::function<bool(KeyframeId)>& admitted) const {
   slam::PlaceQuery query;
   query.admitted = admitted;
   query.max_candidates = static_cast<std::size_t>(config_.slam.place.candidates);
   for (const slam::PlaceCandidate& candidate : slam::find_places(places_, map_, words, query))
-    if (auto meeting = slam::meet_place(map_, frame, candidate.keyframe, config_.slam)) return meeting;
+    if (auto meeting = slam::meet_place(map_, frame, candidate.keyframe, config_.slam);
+        meeting && geometry::largest_sigma(meeting->covariance.topLeftCorner<3, 3>()) <= config_.place_sigma_m)
+      return meeting;
   return std::nullopt;
 }
 
@@ -99,9 +102,12 @@ bool Atlas::is_plausible(KeyframeId id, const slam::PlaceMeeting& meeting, doubl
 }
 
 Atlas::Meeting Atlas::meeting_of(KeyframeId id, const slam::PlaceMeeting& met) const {
+  const geometry::Matrix6d R_camera_world = geometry::block_rotation(met.T_world_camera.linear().transpose());
+  const double doubt2 = config_.meeting_doubt * config_.meeting_doubt;
   return {.place = met.place,
           .keyframe = id,
           .T_place_keyframe = map_.find_keyframe(met.place)->T_world_camera.inverse() * met.T_world_camera,
+          .covariance = doubt2 * R_camera_world * met.covariance * R_camera_world.transpose(),
           .T_new_old = met.T_world_camera * map_.find_keyframe(id)->T_world_camera.inverse()};
 }
 
@@ -240,18 +246,22 @@ slam::PoseGraph Atlas::make_graph(MapId world, std::vector<KeyframeId>& nodes) c
   for (const Meeting& meeting : meetings_)
     if (index.contains(meeting.place) && index.contains(meeting.keyframe))
       graph.edges.push_back({index.at(meeting.place), index.at(meeting.keyframe), meeting.T_place_keyframe,
-                             config_.meeting_sigma_m, config_.meeting_sigma_rad});
+                             config_.meeting_sigma_m, config_.meeting_sigma_rad, meeting.covariance});
   return graph;
 }
 
-/// Whether motions of other robots are no longer what those measured.
+/// Whether motions of other robots are no longer what those measured, or their meetings no longer what they can be.
 bool Atlas::bends_others(const slam::PoseGraph& graph, const std::vector<KeyframeId>& nodes,
                          const std::string& robot) const {
   return std::ranges::any_of(graph.edges, [&](const slam::PoseGraphEdge& edge) {
-    if (sources_.at(nodes[edge.from]).robot == robot || sources_.at(nodes[edge.to]).robot == robot) return false;
+    const std::string &from = sources_.at(nodes[edge.from]).robot, &to = sources_.at(nodes[edge.to]).robot;
+    if (from == robot || to == robot) return false;
     const Eigen::Isometry3d T_now = graph.nodes[edge.from].T_world_node.inverse() * graph.nodes[edge.to].T_world_node;
     const double bend_m = (T_now.translation() - edge.T_from_to.translation()).norm();
-    return bend_m > config_.most_bend_m + config_.most_bend_share * edge.T_from_to.translation().norm();
+    double most_m = config_.most_bend_m + config_.most_bend_share * edge.T_from_to.translation().norm();
+    if (from != to)
+      most_m += 3 * std::hypot(edge.sigma_m, geometry::largest_sigma(edge.covariance.topLeftCorner<3, 3>()));
+    return bend_m > most_m;
   });
 }
 

@@ -146,6 +146,22 @@ TEST(Atlas, old_keyframes_of_a_place_give_way_to_newer_ones) {
   EXPECT_EQ(atlas.map().check_invariants(), "");
 }
 
+TEST(Atlas, a_robot_stays_where_others_come_by_for_long) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig config;
+  config.cell_keyframes = 1;
+  config.look_every = 1000;  // meetings are not what this is about
+  Atlas atlas(config);
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 0);
+  anna.walk(600, atlas);
+  bert.walk(150, atlas);
+  ASSERT_TRUE(robot_in(atlas.state(), "bert").met);
+  bert.walk(900, atlas);
+  EXPECT_GT(atlas.counters().given_way, 0U);
+  EXPECT_EQ(robot_in(atlas.state(), "anna").keyframes, 3U) << "all others are older than what bert has seen there";
+  EXPECT_TRUE(robot_in(atlas.state(), "anna").met);
+}
+
 TEST(Atlas, keyframes_of_a_robot_whose_clock_is_days_ahead_give_way_too) {
   constexpr std::int64_t kDaysNs = 3LL * 24 * 3600 * 1'000'000'000;
   const FeatureWorld world = FeatureWorld::noisy();
@@ -300,6 +316,18 @@ TEST(Atlas, says_nothing_where_a_view_fits_two_places) {
   T.translation().x() = 30;
   carl.send(doubled, room, T);
   EXPECT_FALSE(doubled.locate(query_of(*world.view(50))));
+}
+
+TEST(Atlas, says_nothing_where_a_view_does_not_say_from_where) {
+  const FeatureWorld world = FeatureWorld::noisy();
+  AtlasConfig strict;
+  strict.place_sigma_m = 1e-4;
+  Atlas atlas({}), strict_atlas(strict);
+  AtlasRobot anna("anna", world, 0), bert("bert", world, 0);
+  anna.walk(150, atlas);
+  bert.walk(150, strict_atlas);
+  EXPECT_TRUE(atlas.locate(query_of(*world.view(100))));
+  EXPECT_FALSE(strict_atlas.locate(query_of(*world.view(100)))) << "not known to a tenth of a millimetre";
 }
 
 TEST(Atlas, one_wall_alike_in_rooms_that_differ_joins_no_robots) {

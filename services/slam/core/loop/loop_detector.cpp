@@ -78,8 +78,13 @@ Eigen::Isometry3d correction(const Keyframe& keyframe, const PlaceMeeting& meeti
 }
 
 PlaceMeeting meeting_of(const LocalMap& place, const LocalMapTracking& tracking) {
-  return {vote_reference(place, tracking.guess.landmarks), tracking.guess.T_world_camera, tracking.guess.landmarks,
-          tracking.guess.inliers, found_share(tracking)};
+  const PoseGuess& guess = tracking.guess;
+  return {vote_reference(place, guess.landmarks),
+          guess.T_world_camera,
+          guess.covariance,
+          guess.landmarks,
+          guess.inliers,
+          found_share(tracking)};
 }
 
 std::int64_t no_clock() {

@@ -16,6 +16,7 @@ struct PlaceMeeting {
   KeyframeId place = kNoKeyframe;  ///< keyframe there that sees most of what was found
   Eigen::Isometry3d T_world_camera =
       Eigen::Isometry3d::Identity();  ///< of the keyframe, in the world of the place's landmarks
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< of (x y z rx ry rz), m and rad, in that world
   std::vector<LandmarkId> landmarks;  ///< per feature of the keyframe: landmark of the place, kNoLandmark where none
   int inliers = 0;
   double found_share = 0;  ///< of the place's landmarks that should be visible from there

@@ -13,8 +13,8 @@ namespace rtd::slam {
 namespace {
 
 using geometry::Matrix6d;
-using geometry::Vector6d;
 using geometry::RowMajor6d;
+using geometry::Vector6d;
 using RowMajor67d = Eigen::Matrix<double, 6, 7, Eigen::RowMajor>;
 
 constexpr int kAmbient = 7, kTangent = 6;
@@ -66,20 +66,27 @@ class PoseManifold final : public ceres::Manifold {
 class EdgeCost final : public ceres::SizedCostFunction<kTangent, kAmbient, kAmbient> {
  public:
   explicit EdgeCost(const PoseGraphEdge& edge) : T_from_to_(edge.T_from_to) {
-    whitening_ << Eigen::Vector3d::Constant(1 / edge.sigma_m), Eigen::Vector3d::Constant(1 / edge.sigma_rad);
+    Vector6d sigmas;
+    sigmas << Eigen::Vector3d::Constant(edge.sigma_m), Eigen::Vector3d::Constant(edge.sigma_rad);
+    if (edge.covariance.isZero(0)) {
+      whitening_.diagonal() = sigmas.cwiseInverse();
+    } else {
+      const Matrix6d covariance = edge.covariance + Matrix6d(sigmas.cwiseAbs2().asDiagonal());
+      whitening_ = covariance.llt().matrixL().solve(Matrix6d::Identity());
+    }
   }
 
   bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
     const PoseGraphResidual residual =
         evaluate_pose_graph_edge(to_pose(parameters[0]), to_pose(parameters[1]), T_from_to_);
-    const Vector6d whitened = whitening_.cwiseProduct(residual.value);
+    const Vector6d whitened = whitening_ * residual.value;
     std::copy_n(whitened.data(), kTangent, residuals);
     if (jacobians == nullptr) return true;
     const auto write = [&](double* out, const Matrix6d& J) {
       if (out == nullptr) return;
       Eigen::Map<RowMajor67d> jacobian(out);
       jacobian.setZero();
-      jacobian.leftCols<6>() = whitening_.asDiagonal() * J;
+      jacobian.leftCols<6>() = whitening_ * J;
     };
     write(jacobians[0], residual.by_from);
     write(jacobians[1], residual.by_to);
@@ -88,7 +95,7 @@ class EdgeCost final : public ceres::SizedCostFunction<kTangent, kAmbient, kAmbi
 
  private:
   Eigen::Isometry3d T_from_to_;
-  Vector6d whitening_;
+  Matrix6d whitening_ = Matrix6d::Zero();
 };
 
 /// ad of a twist: [[phi]x, [rho]x; 0, [phi]x].

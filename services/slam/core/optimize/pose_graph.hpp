@@ -21,6 +21,8 @@ struct PoseGraphEdge {
   std::uint32_t from = 0, to = 0;  ///< indices into the nodes
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();
   double sigma_m = 1, sigma_rad = 1;  ///< standard deviations of its translation and rotation
+  /// Added to these, where directions are not equally well known: of d = [rho; phi] in T_from_to Exp(d).
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
 };
 
 struct PoseGraph {

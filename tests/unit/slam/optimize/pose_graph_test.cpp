@@ -164,5 +164,20 @@ TEST(PoseGraph, nothing_to_do_is_no_failure_of_others) {
   EXPECT_FALSE(optimize_pose_graph(empty).usable);
 }
 
+/// Two measurements of one motion, each of which knows another direction well.
+TEST(PoseGraph, an_edge_counts_where_it_knows_something) {
+  constexpr double kWrong_m = 0.1, kUnknown2 = 1;
+  PoseGraph graph;
+  graph.nodes = {{pose_on_circle(0), true}, {pose_on_circle(5), false}};
+  for (const int unknown : {0, 1}) {
+    Vector6d wrong = Vector6d::Zero();
+    wrong[unknown] = kWrong_m;
+    graph.edges.push_back({0, 1, truth_between(0, 5) * geometry::se3_exp(wrong), 0.001, 0.001});
+    graph.edges.back().covariance(unknown, unknown) = kUnknown2;
+  }
+  ASSERT_TRUE(optimize_pose_graph(graph).usable);
+  EXPECT_LT((graph.nodes[1].T_world_node.translation() - pose_on_circle(5).translation()).norm(), 1e-3);
+}
+
 }  // namespace
 }  // namespace rtd::slam
