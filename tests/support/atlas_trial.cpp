@@ -6,29 +6,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
 #include <ctime>
 #include <functional>
+#include <future>
+#include <limits>
+#include <mutex>
 
 #include "tests/support/atlas_robot.hpp"
 
 namespace rtd::test_support {
 namespace {
 
-/// Where a robot was, as it has it and in truth.
+/// Where a robot was, as the joint map has it and in truth.
 struct Pairs {
   std::vector<Eigen::Vector3d> estimate, truth;
 
-  void add(const eval::AteResult& result) {
+  explicit Pairs(const eval::AteResult& result = {}) {
     const Eigen::Isometry3d T = result.alignment.T_groundtruth_estimate.inverse();
     for (const eval::AtePoint& point : result.points) {
       estimate.push_back(T * point.estimate_m);
       truth.push_back(point.groundtruth_m);
     }
   }
-  Pairs moved(const Eigen::Isometry3d& T) const {
-    Pairs pairs = *this;
-    for (Eigen::Vector3d& p : pairs.estimate) p = T * p;
-    return pairs;
+  void append(const Pairs& other) {
+    estimate.insert(estimate.end(), other.estimate.begin(), other.estimate.end());
+    truth.insert(truth.end(), other.truth.begin(), other.truth.end());
   }
 };
 
@@ -52,10 +55,41 @@ double rmse_m(const Pairs& pairs, const eval::Alignment& alignment) {
   return std::sqrt(sum / static_cast<double>(pairs.truth.size()));
 }
 
+eval::Alignment align(const Pairs& pairs) {
+  return eval::align(columns(pairs.estimate), columns(pairs.truth), eval::AlignmentKind::kRigid);
+}
+
 /// What a walk leaves behind for the sum of all.
 struct Walked {
-  Pairs pairs;
+  eval::Trajectory alone, groundtruth;  ///< `alone`: of the robot's own map
+  eval::Trajectory live;                ///< in the joint map as it was with each frame, from the first meeting on
   FirstPose first;
+};
+
+/// Robots that walk at the same time take turns, frame by frame: what comes of it does not depend on their threads.
+class Turns {
+ public:
+  explicit Turns(std::size_t robots) : frames_(robots, 0) {}
+
+  void wait_for(std::size_t robot) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] {
+      return std::ranges::min_element(frames_) - frames_.begin() == static_cast<std::ptrdiff_t>(robot);
+    });
+  }
+  void pass_on(std::size_t robot) { set(robot, frames_[robot] + 1); }
+  void leave(std::size_t robot) { set(robot, std::numeric_limits<std::size_t>::max()); }
+
+ private:
+  void set(std::size_t robot, std::size_t frames) {
+    const std::lock_guard lock(mutex_);
+    frames_[robot] = frames;
+    changed_.notify_all();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::size_t> frames_;  ///< that each has walked
 };
 
 /// Asks for the place of every so-many-th frame until one is found, and takes note of when and where.
@@ -87,9 +121,9 @@ class PlaceSeeker {
   FirstPose first_;
 };
 
-/// `hour` of the trial: stamps of sources may be of any day, but a robot that walks later has seen things later.
-Walked walk(const TrialRobot& robot, std::int64_t hour, const OfflineOptions& options, atlas::Atlas& atlas,
-            TrialResult::Robot& entry) {
+/// `turns`: null for a robot that walks alone, hours after the one before it.
+Walked walk(const TrialRobot& robot, std::size_t number, Turns* turns, const OfflineOptions& options,
+            atlas::Atlas& atlas, TrialResult::Robot& entry) {
   constexpr std::int64_t kHourNs = 3'600'000'000'000;
   constexpr int kReportEvery = 15;
   OfflineOptions own = options;
@@ -98,64 +132,111 @@ Walked walk(const TrialRobot& robot, std::int64_t hour, const OfflineOptions& op
   own.max_frames = robot.max_frames;
   std::optional<AtlasTeller> teller;
   PlaceSeeker seeker(atlas, entry);
+  Walked walked;
+  msg::AtlasRobot found;
   int frames = 0;
+  const auto report_map = [&] {
+    teller->report(atlas);
+    found = robot_in(atlas.state(), robot.name);
+  };
   own.on_start = [&](slam::SlamSystem& slam) {
     teller.emplace(robot.name, slam);
-    teller->clock_behind_ns = hour * kHourNs;
+    if (turns == nullptr) teller->clock_behind_ns = static_cast<std::int64_t>(number) * kHourNs;
   };
   own.on_features = [&](const camera::SourceFrame& frame, const std::vector<msg::Feature>& features) {
+    if (turns != nullptr) turns->wait_for(number);
     if (frames % kReportEvery == 0) seeker.look(frame, features);
   };
-  own.on_frame = [&](const slam::SlamOutput&) {
-    if (++frames % kReportEvery == 0) teller->report(atlas);
+  own.on_frame = [&](const slam::SlamOutput& output) {
+    if (++frames % kReportEvery == 0) report_map();
+    if (found.met && msg::has_pose(output.result.state))
+      walked.live.push_back(
+          {output.result.stamp_ns, msg::to_isometry(found.T_map_robot) * output.result.T_world_camera});
+    if (turns != nullptr) turns->pass_on(number);
   };
-  own.on_end = [&](slam::SlamSystem&) { teller->report(atlas); };
+  own.on_end = [&](slam::SlamSystem&) {
+    if (turns != nullptr) turns->wait_for(number);
+    report_map();
+    if (turns != nullptr) turns->leave(number);
+  };
   const OfflineReport report = run_offline(own);
   entry.ate_alone_m = report.ate_rmse_m;
+  entry.live_alone_m = report.online_ate_rmse_m;
   entry.add_ms = 1e3 * eval::summarize(teller->add_s).mean;
   entry.straighten_ms = 1e3 * eval::summarize(teller->straighten_s).mean;
   entry.kilobytes_per_s = 1e-3 * static_cast<double>(teller->bytes_sent) * 30 / frames;
-  Walked walked{{}, seeker.first(report.groundtruth)};
-  walked.pairs.add(eval::ate(report.trajectory, report.groundtruth));
+  walked.alone = report.trajectory;
+  walked.groundtruth = report.groundtruth;
+  walked.first = seeker.first(report.groundtruth);
   return walked;
 }
 
+/// The poses of a robot in the joint map: each where it is from the keyframe of that robot that is nearest in time.
+eval::Trajectory in_joint_map(const atlas::Atlas& atlas, const std::string& robot, const eval::Trajectory& alone) {
+  std::map<std::int64_t, Eigen::Isometry3d> T_map_robot;  // by the stamps of its keyframes
+  const auto owners = atlas.owners();
+  for (const slam::KeyframeId id : owners.at(robot)) {
+    const slam::Keyframe& keyframe = *atlas.map().find_keyframe(id);
+    const std::int64_t stamp_ns = keyframe.frame->stamp_ns;
+    const auto own = std::ranges::lower_bound(alone, stamp_ns, {}, &eval::StampedPose::stamp_ns);
+    if (own != alone.end() && own->stamp_ns == stamp_ns)
+      T_map_robot[stamp_ns] = keyframe.T_world_camera * own->T_world_body.inverse();
+  }
+  eval::Trajectory joint = alone;
+  for (eval::StampedPose& pose : joint) {
+    auto next = T_map_robot.lower_bound(pose.stamp_ns);
+    const bool is_before =
+        next != T_map_robot.begin() &&
+        (next == T_map_robot.end() || pose.stamp_ns - std::prev(next)->first < next->first - pose.stamp_ns);
+    if (is_before) --next;
+    pose.T_world_body = next->second * pose.T_world_body;
+  }
+  return joint;
+}
+
 /// How well all that met fit together.
-void judge(const msg::AtlasState& state, std::vector<Walked>& walks, TrialResult& result) {
-  Pairs all;
+void judge(const atlas::Atlas& atlas, const std::vector<Walked>& walks, TrialResult& result) {
+  Pairs all, all_live;
+  std::vector<Pairs> joint;
   for (std::size_t i = 0; i < walks.size(); ++i) {
     TrialResult::Robot& entry = result.robots[i];
-    const msg::AtlasRobot& found = robot_in(state, entry.name);
+    const msg::AtlasRobot found = robot_in(atlas.state(), entry.name);
     entry.met = found.met;
     entry.meetings = found.meetings;
     entry.keyframes = found.keyframes;
-    const Pairs& pairs = walks[i].pairs = walks[i].pairs.moved(msg::to_isometry(found.T_map_robot));
+    joint.emplace_back();
     if (!found.met) continue;
-    all.estimate.insert(all.estimate.end(), pairs.estimate.begin(), pairs.estimate.end());
-    all.truth.insert(all.truth.end(), pairs.truth.begin(), pairs.truth.end());
+    const eval::Trajectory& truth = walks[i].groundtruth;
+    joint.back() = Pairs(eval::ate(in_joint_map(atlas, entry.name, walks[i].alone), truth));
+    all.append(joint.back());
+    all_live.append(Pairs(eval::ate(walks[i].live, truth)));
   }
-  const eval::Alignment alignment = eval::align(columns(all.estimate), columns(all.truth), eval::AlignmentKind::kRigid);
+  const eval::Alignment alignment = align(all);
   for (std::size_t i = 0; i < walks.size(); ++i) {
     const FirstPose& first = walks[i].first;
-    result.robots[i].ate_joint_m = rmse_m(walks[i].pairs, alignment);
+    result.robots[i].ate_joint_m = rmse_m(joint[i], alignment);
     if (first.p_truth) result.robots[i].first_pose_error_m = (alignment * first.p_map - *first.p_truth).norm();
   }
   result.ate_joint_m = rmse_m(all, alignment);
+  result.live_joint_m = rmse_m(all_live, align(all_live));
 }
 
 }  // namespace
 
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
-                            const atlas::AtlasConfig& config) {
+                            const atlas::AtlasConfig& config, bool together) {
   atlas::Atlas atlas(config);
   TrialResult result;
+  for (const TrialRobot& robot : robots) result.robots.emplace_back().name = robot.name;
+  Turns turns(robots.size());
+  std::vector<std::future<Walked>> walking;
+  for (std::size_t i = 0; i < robots.size(); ++i)
+    walking.push_back(std::async(together ? std::launch::async : std::launch::deferred, [&, i] {
+      return walk(robots[i], i, together ? &turns : nullptr, options, atlas, result.robots[i]);
+    }));
   std::vector<Walked> walks;
-  for (const TrialRobot& robot : robots) {
-    TrialResult::Robot& entry = result.robots.emplace_back();
-    entry.name = robot.name;
-    walks.push_back(walk(robot, std::ssize(walks), options, atlas, entry));
-  }
-  judge(atlas.state(), walks, result);
+  for (std::future<Walked>& walk : walking) walks.push_back(walk.get());
+  judge(atlas, walks, result);
   result.counters = atlas.counters();
   return result;
 }

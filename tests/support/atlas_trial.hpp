@@ -22,21 +22,23 @@ struct TrialResult {
     std::string name;
     bool met = false;
     std::uint32_t meetings = 0, keyframes = 0;
-    double ate_alone_m = 0;                ///< RMSE of its own trajectory, aligned for itself
-    double ate_joint_m = 0;                ///< in the joint map, all robots that met aligned together
-    double add_ms = 0, straighten_ms = 0;  ///< what a keyframe and a correction cost the atlas, mean CPU
-    double kilobytes_per_s = 0;            ///< of features
+    double ate_alone_m = 0, live_alone_m = 0;  ///< RMSE of its own trajectory, at the end and live; aligned for itself
+    double ate_joint_m = 0;                    ///< in the joint map, all robots that met aligned together
+    double add_ms = 0, straighten_ms = 0;      ///< what a keyframe and a correction cost the atlas, mean CPU
+    double kilobytes_per_s = 0;                ///< of features
     double first_pose_s = -1;       ///< its place asked for with every 15th frame: time to the first answer; -1: none
     double first_pose_error_m = 0;  ///< of that answer; only for robots after the first
   };
   std::vector<Robot> robots;
-  double ate_joint_m = 0;  ///< RMSE over all robots that met
+  double ate_joint_m = 0;   ///< RMSE over all robots that met, in the joint map at the end
+  double live_joint_m = 0;  ///< of poses as a subscriber has them: by the transform of the moment
   atlas::AtlasCounters counters;
 };
 
-/// Robots that walk one after the other, each telling the atlas what it maps. `options`: of all; the source is theirs.
+/// Robots that walk one after the other, or together, each telling the atlas what it maps. `options`: of all; the
+/// source is theirs.
 TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const OfflineOptions& options,
-                            const atlas::AtlasConfig& config = {});
+                            const atlas::AtlasConfig& config = {}, bool together = false);
 
 /// How an atlas does with many robots.
 struct ScaleResult {

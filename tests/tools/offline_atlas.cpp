@@ -24,6 +24,8 @@ int main(int argc, char** argv) {
   app.add_option("--bend-share", config.most_bend_share);
   app.add_option("--cell", config.cell_keyframes);
   app.add_option("--look", config.look_every);
+  bool together = false;
+  app.add_flag("--together", together, "Robots walk at the same time, not one after the other");
   int robots_at_once = 0, seconds = 3600;
   app.add_option("--robots", robots_at_once, "Instead: so many robots along the first walk, again and again");
   app.add_option("--seconds", seconds, "For so long")->capture_default_str();
@@ -47,19 +49,26 @@ int main(int argc, char** argv) {
           result.peak_mb, result.all_met ? ", all met" : ", NOT ALL MET");
       return 0;
     }
-    const TrialResult result = run_atlas_trial(robots, options, config);
-    for (const TrialResult::Robot& robot : result.robots)
+    const TrialResult result = run_atlas_trial(robots, options, config, together);
+    double alone_m = 0, live_m = 0;  // means over the robots
+    for (const TrialResult::Robot& robot : result.robots) {
+      alone_m += robot.ate_alone_m / static_cast<double>(robots.size());
+      live_m += robot.live_alone_m / static_cast<double>(robots.size());
       std::cout << fmt::format(
-          "{}: {} meetings {} keyframes {} ate alone {:.4f} m, joint {:.4f} m, {:.0f} kB/s, first pose after {:.2f} s, "
+          "{}: {} meetings {} keyframes {} ate alone {:.4f} (live {:.4f}) m, joint {:.4f} m, {:.0f} kB/s, first pose "
+          "after {:.2f} s, "
           "{:.4f} m wrong; {:.1f} ms a keyframe, {:.1f} ms a correction\n",
           robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
-          robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m, robot.add_ms,
-          robot.straighten_ms);
+          robot.live_alone_m, robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m,
+          robot.add_ms, robot.straighten_ms);
+    }
     std::cout << fmt::format(
-        "joint ate {:.4f} m, {} keyframes met, {} implausible, {} alike, {} meetings, {} refused, {} corrections, "
+        "joint ate {:.4f} m, {:.2f} of the mean alone; live {:.4f} m, {:.2f}; {} keyframes met, {} implausible, {} "
+        "alike, {} meetings, {} refused, {} corrections, "
         "{} gave way\n",
-        result.ate_joint_m, result.counters.met, result.counters.implausible, result.counters.alike,
-        result.counters.meetings, result.counters.refused, result.counters.corrections, result.counters.given_way);
+        result.ate_joint_m, result.ate_joint_m / alone_m, result.live_joint_m, result.live_joint_m / live_m,
+        result.counters.met, result.counters.implausible, result.counters.alike, result.counters.meetings,
+        result.counters.refused, result.counters.corrections, result.counters.given_way);
   } catch (const std::exception& error) {
     std::cerr << "rtd_offline_atlas: " << error.what() << '\n';
     return 1;
