@@ -1,8 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 //
-// Times of the detector on one thread: whole, by part, and with masks of two people. Needs the weights; RTD_DATA_DIR
-// gives a real image.
+// Times of the detector on one thread, and of masks of two people. Needs the weights; RTD_DATA_DIR gives a real image.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -11,7 +10,6 @@
 
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
-#include "services/detector/core/network_input.hpp"
 #include "services/detector/core/person_segmenter.hpp"
 #include "tests/support/detector/mask_network.hpp"
 
@@ -80,27 +78,6 @@ BENCHMARK_CAPTURE(two_masks, onnxruntime, "onnxruntime:" ONNXRUNTIME_LIBRARY)
     ->Unit(benchmark::kMillisecond)
     ->MinTime(2);
 BENCHMARK_CAPTURE(two_masks, opencv, "cpu")->Unit(benchmark::kMillisecond)->MinTime(2);
-
-void preprocess(benchmark::State& state) {
-  const cv::Mat image = test_image();
-  cv::Mat blob;
-  for (auto _ : state) fill_blob(image, fit_letterbox(image.size(), {640, 480}), {640, 480}, PixelFormat(), blob);
-}
-BENCHMARK(preprocess)->Unit(benchmark::kMillisecond);
-
-void decode_and_suppress(benchmark::State& state) {
-  const DetectorConfig config = config_or_skip(state);
-  if (config.model_path.empty()) return;
-  Network network(config);
-  const cv::Mat image = test_image();
-  cv::Mat blob;
-  fill_blob(image, fit_letterbox(image.size(), network.input()), network.input(), network.pixels(), blob);
-  network.infer(blob);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(suppress_non_maxima(network.candidates(0), config.decode));
-  }
-}
-BENCHMARK(decode_and_suppress)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace rtd::detector

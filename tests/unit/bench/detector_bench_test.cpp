@@ -116,18 +116,14 @@ TEST_F(DetectorBench, refuses_what_gives_no_figures_at_all) {
   EXPECT_THROW(compare(), detector::ModelError);
 }
 
-TEST_F(DetectorBench, the_command_writes_table_json_and_drawing) {
+TEST_F(DetectorBench, the_command_writes_table_and_json) {
   cv::imwrite((folder_ / "images/a.png").string(), images_[0]);
   write("images/notes.txt", "no image");
-  const std::string json = (folder_ / "out.json").string(), svg = (folder_ / "out.svg").string();
-  const Outcome outcome = run({"--images", (folder_ / "images").string(), "--batch", "1,2", "--robots", "1,3",
-                               "--seconds", "0.2", "--json", json, "--svg", svg});
+  const std::string json = (folder_ / "out.json").string();
+  const Outcome outcome = run({"--images", (folder_ / "images").string(), "--batch", "1,2", "--json", json});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("free.onnx, 64x64, 1 image,"), HasSubstr("1 of 1")));
   EXPECT_EQ(nlohmann::json::parse(std::ifstream(json))["cases"][1]["batch"], 2);
-  std::stringstream drawing;
-  drawing << std::ifstream(svg).rdbuf();
-  EXPECT_THAT(drawing.str(), AllOf(HasSubstr("batch 2"), HasSubstr("3 robots"), HasSubstr("</svg>")));
 }
 
 TEST_F(DetectorBench, the_command_names_what_is_wrong) {
@@ -138,10 +134,6 @@ TEST_F(DetectorBench, the_command_names_what_is_wrong) {
   EXPECT_EQ(unwritable.code, 2);
   EXPECT_THAT(unwritable.err, HasSubstr("--json /nowhere/out.json: cannot be written"));
   EXPECT_EQ(run({"--engines", "onnxruntime:/nowhere.so", "--frames", "1"}).code, 1);
-}
-
-TEST_F(DetectorBench, the_drawing_is_complete_also_without_figures) {
-  EXPECT_THAT(detector_svg({}), HasSubstr("</svg>"));
 }
 
 TEST_F(DetectorBench, serves_robots_with_every_engine_and_batch) {

@@ -95,10 +95,5 @@ TEST(Transport, the_table_says_what_never_came) {
   EXPECT_THAT(transport_table({measured()}, options), HasSubstr("2 of 5 never came"));
 }
 
-TEST(Transport, the_picture_is_one_drawing_also_without_numbers) {
-  EXPECT_THAT(transport_svg({measured()}), HasSubstr("Fast DDS, sharing"));
-  EXPECT_THAT(transport_svg({}), HasSubstr("</svg>"));
-}
-
 }  // namespace
 }  // namespace rtd::bench

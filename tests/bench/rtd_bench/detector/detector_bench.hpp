@@ -66,9 +66,8 @@ DetectorComparison bench_detector(std::span<const cv::Mat> images, const Detecto
 /// Number of batches that are computed when no case fails.
 std::size_t batches_of(std::size_t images, const DetectorOptions& options);
 
-/// A table for people, the same as JSON text, and a drawing.
+/// A table for people, and the same as JSON text.
 std::string detector_table(const DetectorComparison& comparison);
 std::string detector_json(const DetectorComparison& comparison);
-std::string detector_svg(const DetectorComparison& comparison);
 
 }  // namespace rtd::bench

@@ -75,7 +75,6 @@ void serve_robots(std::span<const cv::Mat> images, const DetectorOptions& option
 int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& err) {
   const DetectorOptions options = complete(request);
   write_to(request.json_file, "", "--json");  // before the long work, so that a wrong path does not waste it
-  write_to(request.svg_file, "", "--svg");
   const std::vector<cv::Mat> images =
       request.image_folder.empty() ? render_images(request.frames) : read_folder(request.image_folder, request.frames);
   service::Progress progress(err, "batches", batches_of(images.size(), options));
@@ -83,7 +82,6 @@ int compare_engines(DetectorRequest& request, std::ostream& out, std::ostream& e
   serve_robots(images, options, request.load, comparison, err);
   out << detector_table(comparison) << fleet_table(comparison.fleet, comparison.load);
   write_to(request.json_file, detector_json(comparison), "--json");
-  write_to(request.svg_file, detector_svg(comparison), "--svg");
   const auto failed = [](const auto& result) { return !result.failure.empty(); };
   return std::ranges::any_of(comparison.cases, failed) || std::ranges::any_of(comparison.fleet, failed)
              ? service::kRunFailed
@@ -118,7 +116,6 @@ void add_detector_command(CLI::App& app, DetectorRequest& request) {
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   bench->add_option("--json", request.json_file, "Also write all figures into this file");
-  bench->add_option("--svg", request.svg_file, "Also draw a picture into this file");
 }
 
 std::optional<int> run_detector(const CLI::App& app, DetectorRequest& request, std::ostream& out, std::ostream& err) {

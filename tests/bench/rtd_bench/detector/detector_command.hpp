@@ -18,7 +18,7 @@ struct DetectorRequest {
   std::string image_folder;  ///< empty: the rendered office
   std::size_t frames = 32;   ///< images at most
   FleetLoad load;            ///< robots to be served
-  std::string json_file, svg_file;
+  std::string json_file;
 };
 
 void add_detector_command(CLI::App& app, DetectorRequest& request);

@@ -17,9 +17,8 @@ std::vector<TransportResult> bench_transport(const TransportOptions& options,
 /// What the worker processes run: `role` is "publish" or "subscribe"; the result goes to stdout as JSON. Exit code.
 int run_transport_worker(const std::string& role, const TransportCase& what, const TransportOptions& options);
 
-/// A table for people, the same as JSON text, and a picture.
+/// A table for people, and the same as JSON text.
 std::string transport_table(const std::vector<TransportResult>& results, const TransportOptions& options);
 std::string transport_json(const std::vector<TransportResult>& results, const TransportOptions& options);
-std::string transport_svg(const std::vector<TransportResult>& results);
 
 }  // namespace rtd::bench

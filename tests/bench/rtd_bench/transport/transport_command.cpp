@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 #include <iostream>
 
 #include "common/service/command_line.hpp"
@@ -40,10 +39,6 @@ int run_bench(TransportRequest& request) {
   std::uint64_t done = 0;
   const auto results = bench_transport(options, [&](const TransportCase&) { progress.reach(done++); });
   std::cout << (request.json ? transport_json(results, options) : transport_table(results, options));
-  if (!request.svg_file.empty() && !(std::ofstream(request.svg_file) << transport_svg(results))) {
-    std::cerr << "rtd bench: cannot write " << request.svg_file << '\n';
-    return service::kRunFailed;
-  }
   const bool failed =
       std::any_of(results.begin(), results.end(), [](const auto& result) { return !result.failure.empty(); });
   return failed ? service::kRunFailed : service::kOk;
@@ -74,7 +69,6 @@ void add_transport_commands(CLI::App& app, TransportRequest& request) {
       ->delimiter(',')
       ->check(
           CLI::IsMember({"frame", "frame-848x480", "frame-1280x720", "frame-1920x1200", "jpeg", "features", "pose"}));
-  bench->add_option("--svg", request.svg_file, "Also draw a picture into this file");
   bench->add_flag("--json", request.json, "Report as JSON");
 
   CLI::App* worker = app.add_subcommand("transport-worker", "One side of one case")->group("");

@@ -12,7 +12,6 @@ namespace rtd::bench {
 struct TransportRequest {
   TransportOptions options;
   std::vector<std::string> payloads;  ///< by name
-  std::string svg_file;
   bool json = false;
   std::string worker_role, worker_vendor, worker_path, worker_payload;
 };
