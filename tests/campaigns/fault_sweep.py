@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 # SPDX-License-Identifier: Apache-2.0
-"""The faults of `tests/campaigns/stress.py faults`: what is swept, the tables and the drawing. Standard library only."""
+"""The faults of `tests/campaigns/stress.py faults`: what is swept and the tables. Standard library only."""
 import dataclasses
 import math
 import statistics
@@ -114,59 +114,3 @@ def worst_cases(errors: dict, seeds: list, count: int) -> list:
     cases = [(ratio(run), name, strength, seed, run) for (name, strength), runs in errors.items()
              for seed, run in zip(seeds, runs)]
     return sorted(cases, key=lambda case: -case[0])[:count]
-
-
-# ---- the drawing ----
-COLORS = {"off": "#888888", "semantic": "#d08a00", "geometry": "#2a7fbf", "rtd": "#c02a3a", "true-mask": "#3a9a4a"}
-COLUMNS, WIDTH, HEIGHT, PLOT_W, PLOT_H, LEFT, TOP = 4, 290, 210, 220, 130, 52, 34
-LOWEST_M, HIGHEST_M = 0.001, 3.0
-
-
-def height_of(error: float) -> float:
-    """y of an error in its panel: logarithmic; what is lost lies at the top."""
-    clamped = min(max(error, LOWEST_M), HIGHEST_M)
-    return PLOT_H * (1 - math.log(clamped / LOWEST_M) / math.log(HIGHEST_M / LOWEST_M))
-
-
-def panel(name: str, points: list, modes: list) -> list:
-    """`points`: (label, list of {mode: error}), from no fault to the strongest."""
-    step = PLOT_W / max(1, len(points) - 1)
-    svg = [f'<text x="{LEFT}" y="{TOP - 10}" class="title">{name}'
-           f'{" [" + FAULTS[name].unit + "]" if FAULTS[name].unit else ""}</text>',
-           f'<rect x="{LEFT}" y="{TOP}" width="{PLOT_W}" height="{PLOT_H}" class="frame"/>']
-    for tick in (0.001, 0.01, 0.1, 1):
-        y = TOP + height_of(tick)
-        svg.append(f'<line x1="{LEFT}" x2="{LEFT + PLOT_W}" y1="{y:.1f}" y2="{y:.1f}" class="grid"/>'
-                   f'<text x="{LEFT - 5}" y="{y + 4:.1f}" class="tick" text-anchor="end">{tick:g}</text>')
-    for i, (label, _) in enumerate(points):
-        svg.append(f'<text x="{LEFT + i * step:.1f}" y="{TOP + PLOT_H + 15}" class="tick" '
-                   f'text-anchor="middle">{label}</text>')
-    for mode in modes:
-        medians = [(LEFT + i * step, TOP + height_of(statistics.median([run[mode] for run in runs])))
-                   for i, (_, runs) in enumerate(points)]
-        line = " ".join(f"{x:.1f},{y:.1f}" for x, y in medians)
-        svg.append(f'<polyline points="{line}" fill="none" stroke="{COLORS[mode]}" stroke-width="2"/>')
-        for (x, _), (_, runs) in zip(medians, points):
-            y = TOP + height_of(max(run[mode] for run in runs))
-            svg.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.2" fill="{COLORS[mode]}" fill-opacity="0.6"/>')
-    return svg
-
-
-def drawing(errors: dict, modes: list) -> str:
-    """SVG with a panel for every fault: median as a line, worst seed as a dot, by strength."""
-    names = list(dict.fromkeys(name for name, _ in errors if name))
-    rows = math.ceil(len(names) / COLUMNS)
-    width, height = COLUMNS * WIDTH, rows * HEIGHT + 40
-    svg = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" '
-           'font-family="sans-serif"><style>.title{font-size:13px;font-weight:bold}.tick{font-size:10px;fill:#444}'
-           '.grid{stroke:#ddd}.frame{fill:none;stroke:#999}</style>'
-           f'<rect width="{width}" height="{height}" fill="white"/>'
-           '<text x="10" y="22" class="tick">ATE [m]; line: median, dot: worst seed; at the top: lost</text>']
-    for i, mode in enumerate(modes):
-        svg.append(f'<text x="{420 + 110 * i}" y="22" font-size="13" fill="{COLORS[mode]}">&#9644; {mode}</text>')
-    for i, name in enumerate(names):
-        points = [("none", errors[("", 0)])] if name != "sensor" else []
-        points += [(str(strength), runs) for (fault, strength), runs in errors.items() if fault == name]
-        x, y = WIDTH * (i % COLUMNS), 30 + HEIGHT * (i // COLUMNS)
-        svg += [f'<g transform="translate({x},{y})">', *panel(name, points, modes), "</g>"]
-    return "\n".join([*svg, "</svg>", ""])

@@ -14,7 +14,7 @@ rtd and true-mask; names the worst ratio of rtd to the better of semantic and ge
 
 Each run is rtd_offline_run (the whole system in one process, lockstep). FOLDER/runs.jsonl keeps the results: a second
 start with the same program repeats no run. FOLDER/stress.md and stress.json contain the tables, of `faults`
-faults.md, faults.json and the drawing faults.svg (faults.png too where rsvg-convert is installed).
+faults.md and faults.json.
 Exit code: 0 all runs within the limits (`faults`: all runs ended), 1 some are not, 2 the program is missing.
 """
 import argparse
@@ -24,7 +24,6 @@ import json
 import os
 import pathlib
 import shlex
-import shutil
 import statistics
 import subprocess
 import sys
@@ -285,10 +284,6 @@ def write_faults(options, build: str, text: str, errors: dict, seeds: list):
              "ate_m": {mode: error if error != fault_sweep.LOST else None for mode, error in run_errors.items()}}
             for (name, strength), runs in errors.items() for seed, run_errors in zip(seeds, runs)]
     (options.out / "faults.json").write_text(json.dumps({"build": build, "rows": rows}, indent=1) + "\n")
-    svg = options.out / "faults.svg"
-    svg.write_text(fault_sweep.drawing(errors, options.modes))
-    if converter := shutil.which("rsvg-convert"):
-        subprocess.run([converter, "-z", "2", "-o", str(svg.with_suffix(".png")), str(svg)], check=False)
 
 
 def main() -> int:
