@@ -4,12 +4,12 @@
 // How long after slam's first pose a page shows poses, and the room in colour: opens the page of a run that waits for
 // it, as a user does, in Chromium that draws in software on the same computer.
 //   node tests/campaigns/page_room.mjs SOURCE [RUNS=5 [OPTION OF RTD RUN ...]]
-// RTD: the program (build/release/bin/rtd); RTD_NODE_TOOLS, RTD_CHROMIUM: as for the tests (deploy/setup.sh --viewers).
+// RTD_EXECUTABLE, RTD_NODE_TOOLS, RTD_CHROMIUM: as for the tests (deploy/setup.sh --viewers).
 
-import { spawn } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { Service } from "../interop/viewer_live/rtd_process.mjs";
 import { launchBrowser, openPage } from "../interop/viewer_page/browser.mjs";
 
 const kLook_ms = 20, kPatience_ms = 60_000, kLeastRoom = 1000;
@@ -21,31 +21,21 @@ function timeOf(log, event) {
   return Date.parse(`${new Date().toISOString().slice(0, 10)}T${time}`);
 }
 
-const firstTime = (page, what) => page.waitForFunction(`(${what}) && Date.now()`, { polling: kLook_ms, timeout: kPatience_ms })
+/** When the condition held first, which gives the time of day then. */
+const firstTime = (page, condition) => page.waitForFunction(condition, kLeastRoom, { polling: kLook_ms, timeout: kPatience_ms })
   .then((handle) => handle.jsonValue());
 
 async function measure(browser) {
   const folder = mkdtempSync(join(tmpdir(), "rtd_page_room_"));
-  const run = spawn(process.env.RTD ?? "build/release/bin/rtd", ["run", "--source", source, "--pace", "realtime", "--out", join(folder, "run"),
-    "--domain", "86", ...options, "--viewer", "--set", "viewer.port=0"], { stdio: ["ignore", "pipe", "pipe"] });
-  const ended = new Promise((resolve) => run.once("exit", resolve));
-  const address = await new Promise((resolve) => {
-    let printed = "";
-    for (const stream of [run.stdout, run.stderr])
-      stream.on("data", (data) => {
-        printed += data;
-        const found = /viewer: (http:\S+)/.exec(printed);
-        if (found) resolve(found[1]);
-      });
-  });
-  const page = await openPage(browser, address);
-  const pose = firstTime(page, "window.rtdViewer?.state().robots[0]?.tracking?.seq >= 0");
-  const room = firstTime(page, `window.rtdViewer?.state().robots[0]?.maps[0]?.dense > ${kLeastRoom} && rtdViewer.drawnShare > 0`);
+  const run = new Service("run", "--source", source, "--pace", "realtime", "--out", join(folder, "run"), ...options,
+                          "--viewer", "--set", "viewer.port=0");
+  const page = await openPage(browser, (await run.waitFor(/viewer: (http:\S+)/))[1]);
+  const pose = firstTime(page, () => window.rtdViewer?.state().robots[0]?.tracking?.seq >= 0 && Date.now());
+  const room = firstTime(page, (least) => window.rtdViewer?.state().robots[0]?.maps[0]?.dense > least && rtdViewer.drawnShare > 0 && Date.now());
   const [posed_ms, shown_ms] = await Promise.all([pose, room]);
   const first_ms = timeOf(join(folder, "run", "logs", "slam.log"), "map_started");
   await page.close();
-  run.kill("SIGINT");
-  await ended;
+  await run.stop();
   rmSync(folder, { recursive: true });
   return [posed_ms - first_ms, shown_ms - first_ms];
 }

@@ -3,12 +3,12 @@
 
 // Called by viewer_screenshots.sh: node viewer_screenshots.mjs ADDRESS FOLDER
 
-import { createRequire } from "node:module";
+import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
+import { launchBrowser } from "../interop/viewer_page/browser.mjs";
 
 const [address, folder] = process.argv.slice(2);
-const puppeteer = createRequire(join(process.env.RTD_NODE_TOOLS, "x.js"))("puppeteer-core");
 const kViews = [
   { name: "viewer", width: 1280, height: 800, theme: "light" },
   { name: "viewer_dark", width: 1280, height: 800, theme: "dark" },
@@ -28,25 +28,23 @@ async function visit(page) {
   }
 }
 
-const browser = await puppeteer.launch({
-  executablePath: process.env.RTD_CHROMIUM ?? "/usr/bin/chromium",
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
-});
+const browser = await launchBrowser();
 try {
   for (const { name, width, height, theme, phone = false, large = false } of kViews) {
-    const page = await browser.newPage();
-    await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
-    await page.setViewport({ width, height, isMobile: phone, hasTouch: phone, deviceScaleFactor: phone ? 2 : 1 });
+    const page = await browser.newPage({ viewport: { width, height }, isMobile: phone, hasTouch: phone, colorScheme: theme,
+                                         deviceScaleFactor: phone ? 2 : 1 });
     await visit(page);
-    await page.waitForFunction((keyframes, room) => window.rtdViewer?.counts.keyframes >= keyframes && rtdViewer.counts.points > 0 &&
-      rtdViewer.state().robots[0]?.maps[0]?.dense >= room && !document.getElementById("image").hidden, { timeout: kPatience_ms, polling: 200 }, kLeastKeyframes, kLeastRoom);
+    await page.waitForFunction(([keyframes, room]) => window.rtdViewer?.counts.keyframes >= keyframes && rtdViewer.counts.points > 0 &&
+      rtdViewer.state().robots[0]?.maps[0]?.dense >= room && !document.getElementById("image").hidden, [kLeastKeyframes, kLeastRoom], { timeout: kPatience_ms, polling: 200 });
     if (large) await page.keyboard.press("l");
     await sleep(1500);
     await page.evaluate(() => rtdViewer.measureFps(1));   // a slow driver has then drawn all that is there
     await page.waitForFunction((removed) => Number(document.getElementById("removed").textContent.match(/\d+/)?.[0]) >= removed,
-                               { timeout: kPatience_ms, polling: 50 }, kLeastRemoved);   // people are in view
+                               kLeastRemoved, { timeout: kPatience_ms, polling: 50 });   // people are in view
     const path = join(folder, `${name}.webp`);
-    await page.screenshot({ path, type: "webp", quality: 60 });
+    const inspector = await page.context().newCDPSession(page);   // Playwright itself makes no WebP
+    const { data } = await inspector.send("Page.captureScreenshot", { format: "webp", quality: 60 });
+    writeFileSync(path, Buffer.from(data, "base64"));
     console.log(path);
     await page.close();
   }

@@ -8,7 +8,7 @@ set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 source="${1:-synthetic:office?frames=1200&people=2&boxes=0&figures=drawn}" folder="${2:-$root/docs/images}"
 tools="$root/build/release/viewers" port=8799
-[ -d "$tools/node_modules/puppeteer-core" ] || { echo "puppeteer-core is missing: run deploy/setup.sh --viewers" >&2; exit 2; }
+[ -d "$tools/node_modules/playwright-core" ] || { echo "playwright-core is missing: run deploy/setup.sh --viewers" >&2; exit 2; }
 
 mkdir -p "$folder"
 work="$(mktemp -d)"

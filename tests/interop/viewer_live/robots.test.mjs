@@ -107,10 +107,10 @@ test("the protocol lists both robots, and each has as many points as its slam", 
 
 test("the page shows them as layers, and the image of the chosen one", async () => {
   for (const name of kNames)
-    await waitFor(page, (wanted, points) => {
+    await waitFor(page, ([wanted, points]) => {
       const robot = rtdViewer.state().robots.find((one) => one.name === wanted);
       return robot?.maps.reduce((sum, map) => sum + map.points, 0) === points;
-    }, name, pointsOf(client.robot(name)));
+    }, [name, pointsOf(client.robot(name))]);
   await waitFor(page, () => document.querySelectorAll("#maps input").length === 2);
   const layers = await page.$$eval("#maps label", (labels) => labels.map((label) => label.textContent.split(" (")[0]));
   assert.deepEqual(layers, ["anna, map 0", "bert, map 0"]);
@@ -124,7 +124,7 @@ test("the page shows them as layers, and the image of the chosen one", async () 
 
 test("resetting the map of one robot leaves the other's alone", async () => {
   const others = await mapOnPage("bert"), points = pointsOf(client.robot("bert"));
-  await page.select("#robot", String(client.names.indexOf("anna")));
+  await page.selectOption("#robot", String(client.names.indexOf("anna")));
   await waitFor(page, () => document.querySelector('[data-command="/slam/reset"] button')?.disabled === false);
   await page.click('[data-command="/slam/reset"] button');
   await page.click("#confirm [value=yes]");

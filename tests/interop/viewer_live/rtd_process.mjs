@@ -6,7 +6,7 @@
 import { spawn } from "node:child_process";
 import { setTimeout as sleep } from "node:timers/promises";
 
-const kRtd = process.env.RTD_EXECUTABLE;
+const kRtd = process.env.RTD_EXECUTABLE ?? "build/release/bin/rtd";
 export const kDomain = process.env.RTD_TEST_DOMAIN ?? "92";
 
 export class Service {

@@ -15,7 +15,7 @@ skip() {
 }
 command -v node >/dev/null || skip "node is not installed"
 [ "$what" = foxglove ] || command -v chromium >/dev/null || skip "chromium is not installed"
-[ -d "$tools/node_modules/puppeteer-core" ] || skip "the npm package puppeteer-core is not in $tools"
+[ -d "$tools/node_modules/playwright-core" ] || skip "the npm package playwright-core is not in $tools"
 [ -d "$tools/node_modules/@foxglove/ws-protocol" ] || skip "the npm package @foxglove/ws-protocol is not in $tools"
 
 export RTD_EXECUTABLE="$rtd" RTD_NODE_TOOLS="$tools" RTD_SCREENSHOTS="$screenshots"

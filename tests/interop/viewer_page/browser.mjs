@@ -3,7 +3,6 @@
 
 // A headless Chromium with software graphics, and the page in it.
 
-import { mkdirSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { requirePackage } from "../../support/viewer_page/fake_server.mjs";
 
@@ -11,43 +10,41 @@ const kWait_ms = 20_000;   // for what takes a second on a quiet machine
 
 export async function launchBrowser(...args) {
   const graphics = args.length > 0 ? args : ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"];
-  return requirePackage("puppeteer-core").launch({
+  return requirePackage("playwright-core").chromium.launch({
     executablePath: process.env.RTD_CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", ...graphics] });
 }
 
-/** The page at an address; view: {width, height, phone, theme}. page.complaints collects what must not happen. */
-export async function openPage(browser, address, { width = 1280, height = 800, phone = false, theme = "dark" } = {}) {
-  const page = await browser.newPage();
+/**
+ * The page at an address, in a browser or in the context of another page; view: {width, height, phone, theme}.
+ * page.complaints collects what must not happen.
+ */
+export async function openPage(browser, address, { width = 960, height = 600, phone = false, theme = "dark" } = {}) {
+  const look = { viewport: { width, height }, isMobile: phone, hasTouch: phone, colorScheme: theme };
+  const page = await (await browser.newContext?.(look) ?? browser).newPage();
   page.complaints = [];
   page.outside = [];
   page.on("console", (line) => {
-    if (["error", "warn", "warning"].includes(line.type())) page.complaints.push(`console: ${line.text()}`);
+    if (["error", "warning"].includes(line.type())) page.complaints.push(`console: ${line.text()}`);
   });
   page.on("pageerror", (error) => page.complaints.push(String(error.stack ?? error)));
   page.on("request", (request) => {
     const url = request.url();
     if (!url.startsWith(address) && !/^(blob|data):/.test(url)) page.outside.push(url.slice(0, 200));
   });
-  await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: theme }]);
-  await page.setViewport({ width, height, isMobile: phone, hasTouch: phone });
   await page.goto(address);
   return page;
 }
 
-export const waitFor = (page, condition, ...values) => page.waitForFunction(condition, { timeout: kWait_ms, polling: 100 }, ...values);
+export const waitFor = (page, condition, value) => page.waitForFunction(condition, value, { timeout: kWait_ms, polling: 100 });
 
 export const waitForMap = (page, points) => waitFor(page, (n) => rtdViewer.counts.points === n && rtdViewer.fps > 0, points);
 
 export const textOf = (page, selector) => page.$eval(selector, (node) => node.textContent.trim());
 
-/** In base64. Kept as a file when RTD_SCREENSHOTS names a folder; puppeteer itself writes none for base64. */
+/** In base64. Kept as a file when RTD_SCREENSHOTS names a folder. */
 export async function screenshot(page, name) {
-  const folder = process.env.RTD_SCREENSHOTS, png = await page.screenshot({ encoding: "base64" });
-  if (folder) {
-    mkdirSync(folder, { recursive: true });
-    writeFileSync(join(folder, `${name}.png`), Buffer.from(png, "base64"));
-  }
-  return png;
+  const folder = process.env.RTD_SCREENSHOTS;
+  return (await page.screenshot(folder ? { path: join(folder, `${name}.png`) } : {})).toString("base64");
 }
 
 /**
@@ -55,7 +52,7 @@ export async function screenshot(page, name) {
  * differ clearly from the most frequent colour. Read by the browser itself, which knows PNG.
  */
 export function coarse(page, png, columns = 16, rows = 12) {
-  return page.evaluate(async (base64, columns, rows) => {
+  return page.evaluate(async ([base64, columns, rows]) => {
     const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))]));
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height), context = canvas.getContext("2d", { willReadFrequently: true });
     context.drawImage(bitmap, 0, 0);
@@ -76,5 +73,5 @@ export function coarse(page, png, columns = 16, rows = 12) {
     }
     const cells = Array.from({ length: columns * rows }, (_, i) => [0, 1, 2].map((k) => Math.round(sums[4 * i + k] / sums[4 * i + 3])));
     return { cells, background, other: other / (data.length / 4) };
-  }, png, columns, rows);
+  }, [png, columns, rows]);
 }

@@ -79,7 +79,7 @@ test("a replay pauses, steps, seeks and changes its speed", async () => {
     slider.dispatchEvent(new Event("change"));
   });
   await waitFor(page, () => document.getElementById("position").textContent.startsWith("0:12.5"));
-  await page.select("#speed", "2");
+  await page.selectOption("#speed", "2");
   await waitFor(page, () => rtdViewer.state().robots[0].playback.speed === 2);
   assert.deepEqual(server.calls.map(({ name, argument }) => `${name} ${argument}`.trim()),
                    ["/replay/pause true", "/replay/step", "/replay/seek 12.50", "/replay/speed 2"]);
@@ -121,9 +121,7 @@ test("a 3D view that could not be loaded comes once the server is back", async (
   const { port, address } = await serve();
   take(await browser.newPage());
   page.complaints = page.outside = [];
-  await page.setRequestInterception(true);
-  let refused = 0;
-  page.on("request", (request) => (request.url().endsWith("/scene.js") && ++refused === 1 ? request.abort() : request.continue()));
+  await page.route("**/scene.js", (route) => route.abort(), { times: 1 });
   await page.goto(address);
   await waitFor(page, () => !document.getElementById("no-scene").hidden && rtdViewer.counts.points === 5000);
   await server.stop();
@@ -210,7 +208,8 @@ test("the keyboard: modes, themes, large text, help", async () => {
   assert.ok(await page.$("#help[open] kbd"));
 });
 
-for (const [name, view] of Object.entries({ dark: {}, light: { theme: "light" }, phone: { phone: true, width: 390, height: 844 } })) {
+const kLarge = { width: 1280, height: 800 };
+for (const [name, view] of Object.entries({ dark: kLarge, light: { ...kLarge, theme: "light" }, phone: { phone: true, width: 390, height: 844 } })) {
   test(`it looks as it should: ${name}`, async () => {
     await open({}, view);
     await waitForMap(page, 5000);

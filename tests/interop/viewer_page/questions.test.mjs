@@ -4,7 +4,7 @@
 // What the page shows and answers beside the map: the room, depth, why a pose is doubtful, what happened, what is asked.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readdirSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -36,7 +36,7 @@ test("a doubtful pose is explained, and becomes an event", async () => {
   });
   assert.ok(drawn > 300, `${drawn} pixels have the colour of the motion that 30 landmarks follow`);
   await screenshot(page, "doubt");
-  await page.select("#events-filter", "trouble");
+  await page.selectOption("#events-filter", "trouble");
   await waitFor(page, () => [...document.querySelectorAll("#events .event")].every((node) => node.dataset.level !== "ok"));
 });
 
@@ -125,13 +125,11 @@ test("a link opens the same layers and view; a file holds the map", async () => 
   await screenshot(page, "share");
   await page.click("#share-control");
   assert.ok(!(await linkNow()).includes("token=picture"), "with control it has the page's own token");
-  const folder = mkdtempSync(join(tmpdir(), "rtd_share_"));
-  const session = await page.createCDPSession();
-  await session.send("Page.setDownloadBehavior", { behavior: "allow", downloadPath: folder });
-  await page.click("#share-save");
+  const folder = mkdtempSync(join(tmpdir(), "rtd_share_")), file = join(folder, "saved.html");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#share-save")]);
+  assert.match(download.suggestedFilename(), /\.html$/);
   await waitFor(page, () => /MB, opens in any browser/.test(document.getElementById("share-answer").textContent));
-  await until(() => readdirSync(folder).some((name) => name.endsWith(".html")));
-  const file = join(folder, readdirSync(folder).find((name) => name.endsWith(".html")));
+  await download.saveAs(file);
   const saved = await openPage(browser, pathToFileURL(file).href);
   await waitFor(saved, () => document.documentElement.dataset.drawn === "yes");
   assert.match(await textOf(saved, "#layers"), /Room \(5,000 points\)/);
@@ -139,7 +137,7 @@ test("a link opens the same layers and view; a file holds the map", async () => 
   assert.deepEqual([saved.complaints, saved.outside], [[], []]);
   await saved.close();
   rmSync(folder, { recursive: true });
-  const other = await openPage(browser, link);
+  const other = await openPage(page.context(), link);
   await waitForMap(other, 5000);
   assert.equal(await other.$eval("#layer-keyframes", (box) => box.checked), false);
   assert.equal(await other.evaluate(() => rtdViewer.state().scene), "free");
@@ -157,7 +155,7 @@ test("several robots at a glance; a click goes to one", async () => {
 test("the path is coloured by error, with a legend", async () => {
   await open();
   await waitForMap(page, 5000);
-  await page.select("#path-coloring", "error");
+  await page.selectOption("#path-coloring", "error");
   await waitFor(page, () => /red: .* and more/.test(document.getElementById("path-legend").textContent));
 });
 

@@ -15,7 +15,7 @@ skip() {
 }
 command -v node >/dev/null || skip "node is not installed"
 command -v chromium >/dev/null || skip "chromium is not installed"
-[ -d "$tools/node_modules/puppeteer-core" ] || skip "the npm package puppeteer-core is not in $tools"
+[ -d "$tools/node_modules/playwright-core" ] || skip "the npm package playwright-core is not in $tools"
 [ -d "$tools/node_modules/ws" ] || [ -d /usr/share/nodejs/ws ] || skip "the npm package ws is not in $tools"
 [ -f /usr/share/javascript/three/three.module.js ] || skip "libjs-three is not installed"
 

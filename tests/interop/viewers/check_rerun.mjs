@@ -9,7 +9,7 @@ import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
 import { basename, dirname, extname, join } from "node:path";
 import { fileURLToPath } from "node:url";
-import puppeteer from "puppeteer-core";
+import { chromium } from "playwright-core";
 
 const kOpenTimeoutMs = 120_000;
 const kContentType = { ".js": "text/javascript", ".wasm": "application/wasm" };
@@ -21,7 +21,7 @@ const kPage = `<!doctype html><body style="margin:0"><div id="viewer"></div><scr
                      { hide_welcome_screen: true, width: "1280px", height: "800px", render_backend: "webgl" });
 </script>`;
 
-const [recording, digestFile, chromium, picture] = process.argv.slice(2);
+const [recording, digestFile, executablePath, picture] = process.argv.slice(2);
 const viewerFolder = dirname(fileURLToPath(import.meta.resolve("@rerun-io/web-viewer")));
 
 function answer(request, response) {
@@ -39,23 +39,22 @@ function answer(request, response) {
 const expected = JSON.parse(await readFile(digestFile, "utf8"));
 const server = createServer(answer).listen(0, "127.0.0.1");
 await new Promise((resolve) => server.once("listening", resolve));
-const browser = await puppeteer.launch({
-  executablePath: chromium,
+const browser = await chromium.launch({
+  executablePath,
   args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"],
 });
 try {
-  const page = await browser.newPage();
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
   const complaints = [];
   page.on("console", (line) => { if (/^\s*ERROR\b|^WebViewer failure/.test(line.text())) complaints.push(line.text().slice(0, 500)); });
   page.on("pageerror", (error) => complaints.push(String(error)));
-  await page.setViewport({ width: 1280, height: 800 });
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
-  await page.waitForFunction(() => globalThis.opened !== undefined, { timeout: kOpenTimeoutMs });
+  await page.waitForFunction(() => globalThis.opened !== undefined, undefined, { timeout: kOpenTimeoutMs });
   const firstNs = Number(expected.first_log_time), lastNs = Number(expected.last_log_time);
   await page.waitForFunction((end) => {
     const range = viewer.get_time_range(opened.recording_id, "message_log_time");
     return range !== null && range.max >= end;
-  }, { timeout: kOpenTimeoutMs }, lastNs);
+  }, lastNs, { timeout: kOpenTimeoutMs });
   const range = await page.evaluate(() => viewer.get_time_range(opened.recording_id, "message_log_time"));
   const source = await page.evaluate(() => opened.source);
   await new Promise((resolve) => setTimeout(resolve, 2000));  // let it draw
