@@ -54,13 +54,7 @@ class PeakMemory {
 
 class LargeSamples : public ::testing::TestWithParam<std::string> {
  protected:
-  void SetUp() override {
-    const auto matched = [this] {
-      return status_reader_.matched() > 0 && feature_reader_.matched() > 0 && status_.matched() > 0 &&
-             features_.matched() > 0;
-    };
-    for (int i = 0; i < 5000 && !matched(); ++i) std::this_thread::sleep_for(1ms);
-  }
+  void SetUp() override { wait_matched(status_reader_, feature_reader_, status_, features_); }
   /// Writes features while the peer sends its samples of so many MB; returns how many.
   int features_while_peer_sends(int mb) {
     const PeerProcess peer(GetParam(), "send_large", test_domain(), mb);
@@ -125,20 +119,12 @@ using Bytes = std::vector<std::uint8_t>;
 
 class MalformedSamples : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
-  static BusOptions options_with(const std::string& vendor) {
-    BusOptions options;
-    options.vendor = vendor;
-    options.domain = test_domain();
-    options.participant_name = "malformed-samples-test";
-    return options;
-  }
-
   /// Sends malformed samples, then expects a good one of ours to arrive all the same, and the others to be counted.
   template <class T>
   static void expect_survival(const Topic<T>& topic, const char* type_name, const std::vector<Bytes>& malformed,
                               const T& good) {
-    const auto other = connect_raw(options_with(std::get<0>(GetParam())));
-    const auto bus = connect(options_with(std::get<1>(GetParam())));
+    const auto other = connect_raw(options_of(std::get<0>(GetParam())));
+    const auto bus = connect(options_of(std::get<1>(GetParam())));
     Collector<T> received;
     std::atomic<int> lost{0};
     StatusCallbacks status;
@@ -174,14 +160,14 @@ TEST_P(MalformedSamples, malformed_plain_messages_are_left_out) {
 /// Most ROS 2 programs of a network send datagrams of up to 64 kB, we of 1400 B.
 TEST_P(MalformedSamples, larger_datagrams_than_our_own_arrive) {
   if (GetParam() == std::make_tuple("cyclonedds", "cyclonedds")) GTEST_SKIP() << "has one limit for a process";
-  BusOptions theirs = options_with(std::get<0>(GetParam())), ours = options_with(std::get<1>(GetParam()));
+  BusOptions theirs = options_of(std::get<0>(GetParam())), ours = options_of(std::get<1>(GetParam()));
   theirs.shared_memory = ours.shared_memory = false;
   ours.network.max_datagram_bytes = 1400;
   const auto other = connect(theirs), bus = connect(ours);
   Collector<msg::CompressedImage> received;
   const auto reader = bus->reader(topics::kColorJpeg, received.callback());
   auto writer = other->writer(topics::kColorJpeg);
-  for (int i = 0; i < 5000 && (reader.matched() < 1 || writer.matched() < 1); ++i) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, writer);
   msg::CompressedImage image;
   image.data.assign(30'000, 7);
   for (int i = 0; i < 50 && received.size() == 0; ++i) {  // a volatile reader of Cyclone begins at a heartbeat

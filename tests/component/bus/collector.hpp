@@ -6,7 +6,10 @@
 #include <functional>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <thread>
 
+#include "common/bus/raw_bus.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 
 namespace rtd::bus {
@@ -34,5 +37,25 @@ class Collector {
  private:
   concurrency::BoundedQueue<std::shared_ptr<const T>> queue_{100'000, concurrency::Overflow::kDropOldest};
 };
+
+/// Of a reader of bytes.
+inline RawHandlers into(Collector<RawSample>& samples) {
+  RawHandlers handlers;
+  handlers.on_sample = [&samples](RawSample sample) {
+    samples.push(std::make_shared<const RawSample>(std::move(sample)));
+  };
+  return handlers;
+}
+
+/// The writer of another process, or connection, once it is known.
+inline TopicWriter discovered_writer(const RawBus& bus, const std::string& topic) {
+  for (int i = 0; i < 10'000; ++i) {
+    for (const TopicWriter& writer : bus.writers()) {
+      if (writer.topic.name == topic && !writer.own) return writer;
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  throw std::runtime_error("no writer of " + topic);
+}
 
 }  // namespace rtd::bus

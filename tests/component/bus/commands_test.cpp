@@ -30,11 +30,8 @@ using Cause = CommandError::Cause;
 constexpr int kPatience_ms = 8000;
 
 BusOptions options_with(const std::string& vendor, const std::string& robot = {}) {
-  BusOptions options;
-  options.vendor = vendor;
-  options.domain = test_domain();
+  BusOptions options = options_of(vendor);
   options.robot = robot;
-  options.participant_name = "commands-test";
   return options;
 }
 

@@ -79,10 +79,7 @@ class DiscoveryServer : public ::testing::Test {
 
   /// As `--profile wifi --discovery-server 127.0.0.1:PORT` on one host.
   BusOptions options() {
-    BusOptions options;
-    options.vendor = "fastdds";
-    options.domain = test_domain();
-    options.participant_name = "server-test";
+    BusOptions options = options_of("fastdds");
     options.network.multicast = false;
     options.network.discovery_server = "127.0.0.1:" + std::to_string(port_);
     options.on_problem = [this](const std::string& problem) { problems_.push(std::make_shared<std::string>(problem)); };

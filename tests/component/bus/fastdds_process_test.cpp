@@ -82,9 +82,7 @@ TEST(FastddsProcesses, leftovers_of_a_killed_writer_are_cleaned_and_those_of_the
 /// Another process writes frames as fast as it can, with writers that come and go: one that opens its rings may end.
 TEST(FastddsProcesses, a_strangers_rings_are_never_mapped_and_the_camera_of_the_run_is_received_meanwhile) {
   const RingsOfRun run;
-  BusOptions options;
-  options.vendor = "fastdds";
-  options.domain = test_domain();
+  BusOptions options = options_of("fastdds");
   options.shared_memory = false;
   const auto beside = connect(options);
   options.shared_memory = true;
@@ -100,7 +98,7 @@ TEST(FastddsProcesses, a_strangers_rings_are_never_mapped_and_the_camera_of_the_
                   });
   const auto open_reader = beside->reader(
       topics::kFrame, [&, id = camera.id()](const auto&, const WriterId& writer) { strangers += writer != id; });
-  while (reader.matched() == 0 || camera.matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, camera);
   const PeerProcess stranger("fastdds", "churn_frames", test_domain());
   ASSERT_TRUE(eventually([&] { return strangers > 0; }));
   constexpr int kFrames = 200;
@@ -165,7 +163,7 @@ TEST(FastddsProcesses, messages_in_shared_memory_end_where_they_were_written) {
   const auto reader = bus->reader(topics::kFrame, frames.callback());
   auto go = bus->writer(topics::kTracking);
   const PeerProcess peer("fastdds", "send_frames", test_domain(), 60);
-  while (reader.matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, go);
   go.write(msg::TrackingResult{});
   for (int frame = 0; frame < 60; ++frame) frames.next();
   Log::Flush();
@@ -183,9 +181,7 @@ TEST(FastddsLog, is_text_without_colours) {
 }
 
 TEST(FastddsOptions, refuse_a_segment_that_no_image_fits_in) {
-  BusOptions options;
-  options.vendor = "fastdds";
-  options.domain = test_domain();
+  BusOptions options = options_of("fastdds");
   options.shm_segment_mib = 1;
   EXPECT_THROW(connect(options), BusError);
 }

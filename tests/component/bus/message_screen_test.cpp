@@ -21,23 +21,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-std::vector<std::string> all_vendors() {
-  std::vector<std::string> vendors = dds_vendors();
-  vendors.push_back(inprocess::vendor());
-  return vendors;
-}
-
 class MessageScreen : public ::testing::TestWithParam<std::string> {
  protected:
-  MessageScreen() {
-    BusOptions options;
-    options.vendor = GetParam();
-    options.domain = test_domain();
-    options.participant_name = "message-screen-test";
-    sender_ = connect(options);
-    receiver_ = connect(options);
-  }
-
   /// Sends each hostile message and then a good one: that alone arrives, the others are counted with the last's field.
   template <class T>
   void expect_refused(const Topic<T>& topic, const std::vector<std::function<void(T&)>>& attacks,
@@ -45,8 +30,7 @@ class MessageScreen : public ::testing::TestWithParam<std::string> {
     Collector<T> received;
     const auto reader = receiver_->reader(topic, received.callback());
     auto writer = sender_->writer(topic);
-    for (int i = 0; i < 5000 && (reader.matched() < 1 || writer.matched() < 1); ++i) std::this_thread::sleep_for(1ms);
-    ASSERT_EQ(reader.matched(), 1);
+    wait_matched(reader, writer);
     for (const auto& attack : attacks) {
       const auto hostile = walk::plausible_message<T>();
       attack(*hostile);
@@ -64,7 +48,7 @@ class MessageScreen : public ::testing::TestWithParam<std::string> {
     EXPECT_EQ(receiver_->troubles()[topic.name].implausible_field, field);
   }
 
-  std::shared_ptr<Bus> sender_, receiver_;
+  std::shared_ptr<Bus> sender_ = connect_to(GetParam()), receiver_ = connect_to(GetParam());
   std::uint64_t refused_ = 0;
 };
 
@@ -106,7 +90,7 @@ TEST_P(MessageScreen, a_jump_of_the_sequence_numbers_of_a_writer_never_arrives) 
   Collector<msg::TrackingResult> received;
   const auto reader = receiver_->reader(topics::kTracking, received.callback());
   auto writer = sender_->writer(topics::kTracking);
-  for (int i = 0; i < 5000 && (reader.matched() < 1 || writer.matched() < 1); ++i) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, writer);
   for (const std::uint64_t seq : {7ULL, 999'999'999'999ULL, 8ULL}) {
     const auto result = walk::plausible_message<msg::TrackingResult>();
     result->seq = seq;
@@ -126,7 +110,7 @@ TEST_P(MessageScreen, heartbeats_that_would_forge_a_line_never_arrive) {
       "rtd_msgs/Metric.name");
 }
 
-INSTANTIATE_TEST_SUITE_P(Vendors, MessageScreen, ::testing::ValuesIn(all_vendors()),
+INSTANTIATE_TEST_SUITE_P(Vendors, MessageScreen, ::testing::ValuesIn(inprocess::all_vendors()),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

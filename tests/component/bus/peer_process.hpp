@@ -8,10 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "common/bus/bus_factory.hpp"
 #include "tests/support/test_domain.hpp"
@@ -50,13 +52,24 @@ class PeerProcess {
   pid_t pid_ = 0;
 };
 
-/// A connection to that domain.
-inline std::shared_ptr<Bus> connect_to(const std::string& vendor) {
+/// Of a connection to the domain of this process.
+inline BusOptions options_of(const std::string& vendor, const std::string& name = "bus-test") {
   BusOptions options;
   options.vendor = vendor;
   options.domain = test_domain();
-  options.participant_name = "bus-test";
-  return connect(options);
+  options.participant_name = name;
+  return options;
+}
+inline std::shared_ptr<Bus> connect_to(const std::string& vendor) {
+  return connect(options_of(vendor));
+}
+
+/// Until each of these readers and writers has met one.
+template <class... Ends>
+void wait_matched(const Ends&... ends) {
+  for (int i = 0; i < 10'000 && ((ends.matched() == 0) || ...); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  ASSERT_TRUE(((ends.matched() > 0) && ...));
 }
 
 /// The suffix of a test that is run for a vendor.

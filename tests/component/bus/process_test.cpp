@@ -34,7 +34,7 @@ TEST_P(DdsProcesses, frames_arrive_whole_and_in_order) {
   const auto reader = bus->reader(topics::kFrame, frames.callback());
   auto go = bus->writer(topics::kTracking);
   const PeerProcess peer(GetParam(), "send_frames", test_domain(), kFrames);
-  while (reader.matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, go);
   go.write(msg::TrackingResult{});
 
   for (std::uint64_t seq = 0; seq < kFrames; ++seq) {
@@ -79,7 +79,7 @@ TEST_P(DdsProcesses, nothing_is_lost_with_three_feature_frames_in_flight) {
   const auto reader = bus->reader(topics::kTracking, results.callback());
   auto writer = bus->writer(topics::kFeatures);
   const PeerProcess peer(GetParam(), "answer_features", test_domain());
-  while (writer.matched() == 0 || reader.matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(writer, reader);
 
   auto features = std::make_unique<msg::FeatureFrame>();
   std::uint64_t sent = 0;
@@ -109,7 +109,7 @@ TEST_P(DdsProcesses, what_was_paused_longer_than_the_lease_talks_again) {
   const auto reader = bus->reader(topics::kTracking, results.callback());
   auto writer = bus->writer(topics::kFeatures);
   const PeerProcess peer(GetParam(), "answer_features", test_domain());
-  while (writer.matched() == 0 || reader.matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(writer, reader);
   auto features = std::make_unique<msg::FeatureFrame>();
   std::uint64_t seq = 0;
   const auto answered = [&](std::chrono::seconds patience) {
@@ -216,7 +216,7 @@ TEST_P(DdsProcesses, a_frozen_reader_does_not_hold_up_the_writer) {
   const auto bus = connect_to(GetParam());
   auto writer = bus->writer(topics::kFeatures);
   PeerProcess peer(GetParam(), "answer_features", test_domain());
-  for (int i = 0; i < 10'000 && writer.matched() == 0; ++i) std::this_thread::sleep_for(1ms);
+  wait_matched(writer);
   ASSERT_EQ(writer.matched(), 1);
   bool held_up = true;
   for (int i = 0; i < kTries && held_up; ++i) held_up = holds_up(peer.pid(), writer);

@@ -21,33 +21,6 @@ using Samples = Collector<RawSample>;
 
 constexpr std::size_t kHeader = 4;
 
-BusOptions raw_options_with(const std::string& vendor) {
-  BusOptions options;
-  options.vendor = vendor;
-  options.domain = test_domain();
-  options.participant_name = "raw-test";
-  return options;
-}
-
-RawHandlers into_samples(Samples& samples) {
-  RawHandlers handlers;
-  handlers.on_sample = [&samples](RawSample sample) {
-    samples.push(std::make_shared<const RawSample>(std::move(sample)));
-  };
-  return handlers;
-}
-
-/// The writer of that topic once it is known.
-TopicWriter wait_for_writer(const RawBus& bus, const std::string& topic) {
-  for (int i = 0; i < 5000; ++i) {
-    for (const TopicWriter& writer : bus.writers()) {
-      if (writer.topic.name == topic && !writer.own) return writer;
-    }
-    std::this_thread::sleep_for(1ms);
-  }
-  throw std::runtime_error("no writer of " + topic);
-}
-
 /// Whether a vendor keeps frames in the writer's shared memory.
 bool shares_frames(const std::string& vendor) {
   return vendor == "fastdds";
@@ -58,18 +31,18 @@ class RawFrames : public ::testing::TestWithParam<std::tuple<std::string, bool>>
 TEST_P(RawFrames, all_arrive_with_every_byte) {
   const auto& [vendor, in_place] = GetParam();
   constexpr std::uint64_t kFrames = 60;
-  const auto typed = connect(raw_options_with(vendor));
-  const auto bus = connect_raw(raw_options_with(vendor));
+  const auto typed = connect(options_of(vendor));
+  const auto bus = connect_raw(options_of(vendor));
   auto go = typed->writer(topics::kTracking);
   const PeerProcess peer(vendor, "send_frames", test_domain(), kFrames);
-  const TopicWriter camera = wait_for_writer(*bus, topics::kFrame.name);
+  const TopicWriter camera = discovered_writer(*bus, topics::kFrame.name);
   EXPECT_EQ(camera.topic.type, "rtd_msgs::msg::dds_::RgbdFrame_");
   EXPECT_EQ(camera.shared_memory, shares_frames(vendor));
   Samples samples;
   RawReaderOptions options;
   options.in_place = in_place;
-  const auto reader = bus->reader(camera.topic, options, into_samples(samples));
-  while (reader->matched() == 0 || go.matched() == 0) std::this_thread::sleep_for(1ms);
+  const auto reader = bus->reader(camera.topic, options, into(samples));
+  wait_matched(*reader, go);
   go.write(msg::TrackingResult{});
 
   auto frame = std::make_unique<msg::RgbdFrame>();
@@ -97,15 +70,15 @@ INSTANTIATE_TEST_SUITE_P(Vendors, RawProcesses, ::testing::ValuesIn(dds_vendors(
 
 TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
   const PeerProcess peer(vendor, "leave_history", test_domain(), 10);
-  const auto bus = connect_raw(raw_options_with(vendor));
-  const TopicWriter slam = wait_for_writer(*bus, topics::kKeyframes.name);
+  const auto bus = connect_raw(options_of(vendor));
+  const TopicWriter slam = discovered_writer(*bus, topics::kKeyframes.name);
   EXPECT_EQ(slam.qos.durability, RawQos::Durability::kTransientLocal);
   EXPECT_TRUE(slam.qos.reliable);
   EXPECT_FALSE(slam.shared_memory);
   Samples samples;
   RawReaderOptions options;
   options.transient_local = true;
-  const auto reader = bus->reader(slam.topic, options, into_samples(samples));
+  const auto reader = bus->reader(slam.topic, options, into(samples));
   for (std::uint64_t i = 0; i < 10; ++i) {
     const auto sample = samples.next();
     msg::KeyframeEvent event{};
@@ -116,12 +89,12 @@ TEST_P(RawProcesses, history_of_our_latched_topics_reaches_a_late_reader) {
 }
 
 TEST_P(RawProcesses, typed_readers_understand_raw_writers) {
-  const auto typed = connect(raw_options_with(vendor));
-  const auto bus = connect_raw(raw_options_with(vendor));
+  const auto typed = connect(options_of(vendor));
+  const auto bus = connect_raw(options_of(vendor));
   Collector<msg::TrackingResult> results;
   const auto reader = typed->reader(topics::kTracking, results.callback());
   const auto writer = bus->writer({topics::kTracking.name, "rtd_msgs::msg::dds_::TrackingResult_"}, {});
-  while (reader.matched() == 0 || writer->matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, *writer);
   msg::TrackingResult sent{};
   sent.seq = 42;
   std::vector<std::byte> bytes(kHeader + sizeof(sent), std::byte{0});
@@ -132,15 +105,15 @@ TEST_P(RawProcesses, typed_readers_understand_raw_writers) {
 }
 
 TEST_P(RawProcesses, frames_from_a_raw_writer_reach_typed_readers) {
-  const auto typed = connect(raw_options_with(vendor));
-  const auto bus = connect_raw(raw_options_with(vendor));
+  const auto typed = connect(options_of(vendor));
+  const auto bus = connect_raw(options_of(vendor));
   Collector<msg::RgbdFrame> frames;
   const auto reader = typed->reader(topics::kFrame, frames.callback());
   RawWriterOptions options;
   options.qos.depth = 4;
   options.fixed_bytes = static_cast<std::uint32_t>(kHeader + sizeof(msg::RgbdFrame));
   const auto writer = bus->writer({topics::kFrame.name, "rtd_msgs::msg::dds_::RgbdFrame_"}, options);
-  while (reader.matched() == 0 || writer->matched() == 0) std::this_thread::sleep_for(1ms);
+  wait_matched(reader, *writer);
   auto frame = std::make_unique<msg::RgbdFrame>();
   std::vector<std::byte> bytes(kHeader + sizeof(*frame), std::byte{0});
   bytes[1] = std::byte{1};
@@ -155,7 +128,7 @@ TEST_P(RawProcesses, frames_from_a_raw_writer_reach_typed_readers) {
 }
 
 TEST_P(RawProcesses, one_topic_cannot_have_two_types) {
-  const auto bus = connect_raw(raw_options_with(vendor));
+  const auto bus = connect_raw(options_of(vendor));
   const auto first = bus->reader({"rt/a", "x::A_"}, {}, {});
   EXPECT_THROW((void)bus->reader({"rt/a", "x::B_"}, {}, {}), BusError);
 }

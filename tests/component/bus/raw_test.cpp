@@ -41,29 +41,9 @@ std::uint32_t number_of(const RawSample& sample) {
   return number;
 }
 
-RawHandlers into(Samples& samples) {
-  RawHandlers handlers;
-  handlers.on_sample = [&samples](RawSample sample) {
-    samples.push(std::make_shared<const RawSample>(std::move(sample)));
-  };
-  return handlers;
-}
-
 class RawTopics : public ::testing::TestWithParam<std::string> {
  protected:
-  std::shared_ptr<RawBus> connect_one() {
-    BusOptions options;
-    options.vendor = GetParam();
-    options.domain = test_domain();
-    options.participant_name = "raw-test";
-    return connect_raw(options);
-  }
-  template <class A, class B>
-  static void wait_matched(const A& a, const B& b) {
-    for (int i = 0; i < 5000 && (a.matched() == 0 || b.matched() == 0); ++i) std::this_thread::sleep_for(1ms);
-    ASSERT_GT(a.matched(), 0);
-    ASSERT_GT(b.matched(), 0);
-  }
+  static std::shared_ptr<RawBus> connect_one() { return connect_raw(options_of(GetParam(), "raw-test")); }
 };
 
 TEST_P(RawTopics, readers_are_known_by_the_name_of_their_connection_until_they_go) {

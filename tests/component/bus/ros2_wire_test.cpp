@@ -24,25 +24,8 @@ using namespace std::chrono_literals;
 
 class Ros2Wire : public ::testing::TestWithParam<std::string> {
  protected:
-  BusOptions options(const char* name) const {
-    BusOptions options;
-    options.vendor = GetParam();
-    options.domain = test_domain();
-    options.participant_name = name;
-    return options;
-  }
+  static BusOptions options(const char* name) { return options_of(GetParam(), name); }
 };
-
-/// The writer of that topic once it is known; with an empty name when it never is.
-TopicWriter writer_of(const RawBus& bus, const std::string& topic) {
-  for (int i = 0; i < 10000; ++i) {
-    for (const TopicWriter& writer : bus.writers()) {
-      if (writer.topic.name == topic && !writer.own) return writer;
-    }
-    std::this_thread::sleep_for(1ms);
-  }
-  return {};
-}
 
 void expect_as_ros2_wants_it(const TopicWriter& writer, bool latched) {
   EXPECT_NE(ros2::ros_type(writer.topic.type), writer.topic.type) << "is a ROS 2 name: " << writer.topic.type;
@@ -64,9 +47,7 @@ TEST_P(Ros2Wire, topics_of_standard_types_announce_names_qos_and_hashes_of_ros2)
   const auto raw = connect_raw(options("ros2-wire-raw"));
   const auto check = [&](const auto& topic) {
     const auto writer = bus->writer(topic);
-    const TopicWriter seen = writer_of(*raw, topic.name);
-    ASSERT_EQ(seen.topic.name, topic.name) << "discovered";
-    expect_as_ros2_wants_it(seen, topic.profile == QosProfile::kLatched);
+    expect_as_ros2_wants_it(discovered_writer(*raw, topic.name), topic.profile == QosProfile::kLatched);
   };
   using namespace topics;
   check(kColorJpeg);
@@ -92,13 +73,6 @@ TEST_P(Ros2Wire, default_and_sensor_data_subscriptions_are_served) {
   const auto raw = connect_raw(options("ros2-wire-raw"));
   auto writer = bus->writer(topics::kOdometry);
   Collector<RawSample> reliable, best_effort;
-  const auto into = [](Collector<RawSample>& samples) {
-    RawHandlers handlers;
-    handlers.on_sample = [&samples](RawSample sample) {
-      samples.push(std::make_shared<const RawSample>(std::move(sample)));
-    };
-    return handlers;
-  };
   const RawTopic topic{"rt/slam/odometry", "nav_msgs::msg::dds_::Odometry_"};
   RawReaderOptions by_default, sensor_data;
   by_default.depth = 10;
