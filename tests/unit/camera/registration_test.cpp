@@ -33,16 +33,25 @@ constexpr const char* kColorTopic = "/camera/color/image_raw";
 constexpr const char* kDepthTopic = "/camera/depth/image_rect_raw";
 constexpr const char* kDepthInfo = "/camera/depth/camera_info";
 
-/// A bag as a ROS driver's: colour and depth each in a frame of its own.
-void add_color(ImageBag& bag, const TwoCameras& cameras, double stamp_s = 1) {
-  bag.add("/camera/color/camera_info", kRosInfo, TwoCameras::info(cameras.color), stamp_s);
-  bag.add(kColorTopic, kRosImage, cameras.color_image(stamp_s), stamp_s);
+/// As a ROS driver records them: colour and depth each in a frame of its own.
+void add_images(ImageBag& bag, const TwoCameras& cameras) {
+  bag.add("/camera/color/camera_info", kRosInfo, TwoCameras::info(cameras.color), 1);
+  bag.add(kColorTopic, kRosImage, cameras.color_image(1), 1);
+  bag.add(kDepthTopic, kRosImage, cameras.depth_image(1), 1);
 }
-void add_depth(ImageBag& bag, const TwoCameras& cameras, double stamp_s = 1) {
-  bag.add(kDepthTopic, kRosImage, cameras.depth_image(stamp_s), stamp_s);
+void add_calibrated(ImageBag& bag, const TwoCameras& cameras) {
+  add_images(bag, cameras);
+  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
 }
 std::string uri_of(ImageBag& bag) {
   return bag.uri() + "?depth=" + kDepthTopic;
+}
+
+/// The image of the only frame.
+vision::RgbdImage play_one(const std::string& uri) {
+  const auto frames = play(uri);
+  EXPECT_THAT(frames, SizeIs(1));
+  return frames.at(0).image;
 }
 
 template <class Words>
@@ -53,26 +62,19 @@ void expect_refused(const std::string& uri, const Words& words) {
 TEST(Registration, of_a_bag_by_its_camera_infos_and_tf_static) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras);
-  add_depth(bag, cameras);
-  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  add_calibrated(bag, cameras);
   bag.add("/tf_static", "tf2_msgs/TFMessage", cameras.transforms(), 1);
-  const auto frames = play(uri_of(bag));
-  ASSERT_THAT(frames, SizeIs(1));
-  EXPECT_EQ(frames[0].image.camera.parameters(), cameras.color.parameters());
-  cameras.expect_registered(frames[0].image);
+  const auto image = play_one(uri_of(bag));
+  EXPECT_EQ(image.camera.parameters(), cameras.color.parameters());
+  cameras.expect_registered(image);
 }
 
 TEST(Registration, of_a_bag_by_tf_of_old) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras);
-  add_depth(bag, cameras);
-  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  add_calibrated(bag, cameras);
   bag.add("/tf", "tf/tfMessage", cameras.transforms("/"), 1);
-  const auto frames = play(uri_of(bag));
-  ASSERT_THAT(frames, SizeIs(1));
-  cameras.expect_registered(frames[0].image);
+  cameras.expect_registered(play_one(uri_of(bag)));
 }
 
 TEST(Registration, of_an_mcap_file_with_the_info_of_depth_elsewhere) {
@@ -85,9 +87,7 @@ TEST(Registration, of_an_mcap_file_with_the_info_of_depth_elsewhere) {
   file.add("/tf_static", "tf2_msgs/msg/TFMessage", cameras.transforms(), 1);
   const std::string uri = file.uri() + "?depth=" + kDepthTopic;
   expect_refused(uri, AllOf(HasSubstr("depth is not registered"), HasSubstr("?depth_info=TOPIC")));
-  const auto frames = play(uri + "&depth_info=/elsewhere");
-  ASSERT_THAT(frames, SizeIs(1));
-  cameras.expect_registered(frames[0].image);
+  cameras.expect_registered(play_one(uri + "&depth_info=/elsewhere"));
   EXPECT_EQ(make_source(uri + "&depth_info=/elsewhere")->info().frame_id, cameras.color_frame);
 }
 
@@ -115,9 +115,7 @@ TEST(Registration, of_a_realsense_sdk_bag_by_the_transforms_in_it) {
   const TwoCameras cameras;
   ImageBag bag;
   add_sdk(bag, cameras, true);
-  const auto frames = play(bag.uri() + kSdkTopics);
-  ASSERT_THAT(frames, SizeIs(1));
-  cameras.expect_registered(frames[0].image);
+  cameras.expect_registered(play_one(bag.uri() + kSdkTopics));
 }
 
 TEST(Registration, a_realsense_sdk_bag_is_never_accepted_as_it_is) {
@@ -190,7 +188,7 @@ double depth_unit_of_orbbec(std::uint32_t number, auto value) {
   add_orbbec_property(bag, 1024, std::uint64_t{75});
   add_orbbec_property(bag, number, value);
   add_orbbec(bag, cameras, cameras.T_color_depth);
-  return play(bag.uri()).at(0).image.depth_scale_m;
+  return play_one(bag.uri()).depth_scale_m;
 }
 TEST(Registration, of_an_orbbec_sdk_bag_in_the_depth_unit_among_its_properties) {
   EXPECT_NEAR(depth_unit_of_orbbec(176, 0.25F), 0.00025, 1e-9) << "Gemini 330: millimetres";
@@ -207,12 +205,11 @@ TEST(Registration, of_an_orbbec_sdk_bag_by_its_stream_profiles) {
   const TwoCameras cameras;
   ImageBag bag;
   add_orbbec(bag, cameras, cameras.T_color_depth);
-  const auto frames = play(bag.uri());
-  ASSERT_THAT(frames, SizeIs(1));
-  EXPECT_NEAR(frames[0].image.color_bgr.at<cv::Vec3b>(20, 20)[0], 90, 2);
-  EXPECT_LT(difference_px(frames[0].image.camera, cameras.color), 1e-3);
-  EXPECT_NEAR(frames[0].image.camera.parameters().distortion[2], 0.001, 1e-6);
-  cameras.expect_registered(frames[0].image);
+  const auto image = play_one(bag.uri());
+  EXPECT_NEAR(image.color_bgr.at<cv::Vec3b>(20, 20)[0], 90, 2);
+  EXPECT_LT(difference_px(image.camera, cameras.color), 1e-3);
+  EXPECT_NEAR(image.camera.parameters().distortion[2], 0.001, 1e-6);
+  cameras.expect_registered(image);
   ImageBag without_color;
   add_orbbec(without_color, cameras, Eigen::Isometry3d(Eigen::Matrix4d::Zero()));
   expect_refused(without_color.uri(), HasSubstr("the transform between the two frames"));
@@ -221,18 +218,14 @@ TEST(Registration, of_an_orbbec_sdk_bag_by_its_stream_profiles) {
 TEST(Registration, depth_in_another_frame_without_a_transform_or_an_info_is_refused) {
   const TwoCameras cameras;
   ImageBag without_info;
-  add_color(without_info, cameras);
-  add_depth(without_info, cameras);
+  add_images(without_info, cameras);
   without_info.add("/tf_static", "tf2_msgs/TFMessage", cameras.transforms(), 1);
   expect_refused(uri_of(without_info), AllOf(HasSubstr("?depth_info=TOPIC"), HasSubstr("64 x 48")));
   ImageBag without_transform;
-  add_color(without_transform, cameras);
-  add_depth(without_transform, cameras);
-  without_transform.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  add_calibrated(without_transform, cameras);
   expect_refused(uri_of(without_transform), AllOf(HasSubstr("tf_static"), HasSubstr("?registered=1")));
   ImageBag bad_info;
-  add_color(bad_info, cameras);
-  add_depth(bad_info, cameras);
+  add_images(bad_info, cameras);
   bad_info.add(kDepthInfo, kRosInfo, msg::CameraInfo(), 1);
   expect_refused(uri_of(bad_info), AllOf(HasSubstr("not registered"), HasSubstr("not calibrated")));
 }
@@ -242,12 +235,8 @@ TEST(Registration, one_frame_with_other_intrinsics_is_another_raster) {
   cameras.T_color_depth = Eigen::Isometry3d::Identity();
   cameras.depth_frame = cameras.color_frame;
   ImageBag bag;
-  add_color(bag, cameras);
-  add_depth(bag, cameras);
-  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
-  const auto frames = play(uri_of(bag));
-  ASSERT_THAT(frames, SizeIs(1));
-  cameras.expect_registered(frames[0].image);
+  add_calibrated(bag, cameras);
+  cameras.expect_registered(play_one(uri_of(bag)));
 }
 
 TEST(Registration, a_calibration_file_is_that_of_colour_and_of_the_depth_unit) {
@@ -256,26 +245,21 @@ TEST(Registration, a_calibration_file_is_that_of_colour_and_of_the_depth_unit) {
   cameras.T_color_depth = Eigen::Isometry3d::Identity();
   cameras.depth = geometry::CameraModel({50, 50, 32, 24, {}, TwoCameras::kWidth, TwoCameras::kHeight});
   ImageBag bag;
-  add_color(bag, cameras);
-  add_depth(bag, cameras);
-  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  add_calibrated(bag, cameras);
   const std::string uri = uri_of(bag);
   std::string text = SequenceFolder::calibration(TwoCameras::kWidth, TwoCameras::kHeight);
   text.replace(text.find("5000"), 4, "1000");
   const rtd::test::TemporaryFile file("c.yaml", text);
-  const auto frames = play(uri + "&calibration=" + file.path().string());
-  ASSERT_THAT(frames, SizeIs(1));
-  cameras.color = frames[0].image.camera;
+  const auto image = play_one(uri + "&calibration=" + file.path().string());
+  cameras.color = image.camera;
   EXPECT_DOUBLE_EQ(cameras.color.parameters().fx, 52);
-  cameras.expect_registered(frames[0].image);
+  cameras.expect_registered(image);
 }
 
 TEST(Registration, damaged_transforms_do_not_count) {
   const TwoCameras cameras;
   ImageBag bag;
-  add_color(bag, cameras);
-  add_depth(bag, cameras);
-  bag.add(kDepthInfo, kRosInfo, TwoCameras::info(cameras.depth), 1);
+  add_calibrated(bag, cameras);
   bag.add("/tf_static", "tf2_msgs/TFMessage", msg::Time{7, 7}, 1);
   msg::TFMessage no_rotation = cameras.transforms();
   for (auto& transform : no_rotation.transforms) transform.transform.rotation = {0, 0, 0, 0};
