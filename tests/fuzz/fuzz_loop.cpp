@@ -127,11 +127,6 @@ std::string text_of(const Bytes& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::string content_of(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 Bytes mutate(const Bytes& file, const Bytes& other, Random& random) {
   Bytes changed = file;
   for (std::size_t changes = 1 + below(6, random); changes > 0; --changes) change(changed, other, random);
@@ -175,14 +170,6 @@ int run_fuzz(int argc, char** argv, const FuzzDriver& driver) {
   }
   std::printf("%llu inputs, all well (%s)\n", static_cast<unsigned long long>(inputs), driver.counted().c_str());
   return 0;
-}
-
-FuzzFile::FuzzFile(const std::string& extension)
-    : path_(std::filesystem::temp_directory_path() / ("rtd_fuzz_" + std::to_string(getpid()) + extension)) {}
-
-FuzzFile::~FuzzFile() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 void FuzzFile::write(const Bytes& bytes) const {

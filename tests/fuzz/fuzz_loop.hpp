@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <random>
 #include <string>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "common/io/bytes.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::fuzz {
 
@@ -20,7 +20,6 @@ using Random = std::mt19937_64;
 
 io::Bytes bytes_of(std::string_view text);
 std::string text_of(const io::Bytes& bytes);
-std::string content_of(const std::filesystem::path& file);
 
 /// A changed copy: bits, bytes, integers that programs get wrong, blocks moved, repeated or cut, and `other` spliced
 /// in.
@@ -47,14 +46,12 @@ int run_fuzz(int argc, char** argv, const FuzzDriver& driver);
 /// The input of a reader of files, removed at the end.
 class FuzzFile {
  public:
-  explicit FuzzFile(const std::string& extension);
-  ~FuzzFile();
-  FuzzFile(const FuzzFile&) = delete;
-  FuzzFile& operator=(const FuzzFile&) = delete;
+  explicit FuzzFile(const std::string& extension) : path_(folder_ / ("input" + extension)) {}
   const std::filesystem::path& path() const { return path_; }
   void write(const io::Bytes& bytes) const;
 
  private:
+  test::TemporaryFolder folder_;
   std::filesystem::path path_;
 };
 

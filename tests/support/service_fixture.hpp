@@ -19,6 +19,7 @@
 #include "common/service/runtime.hpp"
 #include "tests/support/inbox.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::test_support {
 
@@ -27,8 +28,7 @@ namespace rtd::test_support {
 template <class Service>
 class ServiceFixture : public ::testing::Test {
  protected:
-  ServiceFixture() : folder_(folder_of_test()), bus_options_(next_domain()), bus_(bus::connect(bus_options_)) {
-    std::filesystem::remove_all(folder_);
+  ServiceFixture() : bus_options_(next_domain()), bus_(bus::connect(bus_options_)) {
     statuses_reader_ = bus_->template reader<msg::ServiceStatus>(
         bus::topics::kStatus, [this](std::shared_ptr<const msg::ServiceStatus> status) {
           if (status->service == Service::kName) states_.take(std::move(status));
@@ -37,7 +37,6 @@ class ServiceFixture : public ::testing::Test {
   void TearDown() override {
     EXPECT_EQ(stop(), service::kOk);
     stop_receiving();
-    std::filesystem::remove_all(folder_);
   }
 
   /// Returns at once.
@@ -94,7 +93,8 @@ class ServiceFixture : public ::testing::Test {
   void stop_receiving() { readers_.clear(); }
 
   typename Service::Config config_;
-  const std::filesystem::path folder_;  ///< not there yet; removed after the test
+  const test::TemporaryFolder scratch_;
+  const std::filesystem::path folder_ = scratch_ / "out";  ///< not there yet
   service::StopToken stop_;
   const bus::BusOptions bus_options_;
   const std::shared_ptr<bus::Bus> bus_;
@@ -107,10 +107,6 @@ class ServiceFixture : public ::testing::Test {
     options.vendor = bus::inprocess::vendor();
     options.domain = domain++;
     return options;
-  }
-  static std::filesystem::path folder_of_test() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    return std::filesystem::temp_directory_path() / (std::string("rtd_") + Service::kName + "_service_" + test->name());
   }
 
   /// Each service has one of its own.

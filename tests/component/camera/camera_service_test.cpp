@@ -21,6 +21,7 @@
 #include "tests/component/camera/in_process.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/inbox.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -95,10 +96,7 @@ class CameraServiceTest : public ::testing::Test {
       if (status->service == "camera") last_status_ = *status;
     });
     config_.wait_for = {};
-    folder_ = std::filesystem::temp_directory_path() / ("rtd_camera_service_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   service::ExitCode run(service::Pace pace) {
     service::Heartbeat heartbeat(*bus_, "camera", stop_);
@@ -117,7 +115,7 @@ class CameraServiceTest : public ::testing::Test {
   const std::shared_ptr<bus::Bus> bus_ = test::in_process_bus();
   service::StopToken stop_;
   ServiceConfig config_;
-  std::filesystem::path folder_;
+  const rtd::test::TemporaryFolder folder_;
 
  private:
   mutable std::mutex mutex_;

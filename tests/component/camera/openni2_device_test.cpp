@@ -11,6 +11,7 @@
 #include "common/camera/frame_source.hpp"
 #include "services/camera/live_camera.hpp"
 #include "tests/support/oni_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -24,9 +25,6 @@ constexpr std::uint64_t kPeriodUs = 33'333;
 
 class OpenNi2DeviceTest : public ::testing::Test {
  protected:
-  OpenNi2DeviceTest() : file_(std::filesystem::temp_directory_path() / ("rtd_" + std::to_string(getpid()) + ".oni")) {}
-  ~OpenNi2DeviceTest() override { std::filesystem::remove(file_); }
-
   /// Frame i is of colour (10 + i, 20, 30) RGB and of depth 1000 + i mm, 5 ms later.
   void record(double horizontal_fov_rad = 1.0, double vertical_fov_rad = 0.8) const {
     rtd::test::OniWriter writer(file_, {kOpenNiWidth, kOpenNiHeight}, 30, horizontal_fov_rad, vertical_fov_rad);
@@ -40,7 +38,8 @@ class OpenNi2DeviceTest : public ::testing::Test {
     return make_live_source("openni2:" + file_.string() + parameters, {}, 5'000'000'000, [](const std::string&) {});
   }
 
-  const std::filesystem::path file_;
+  const rtd::test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "walk.oni";
 };
 
 TEST_F(OpenNi2DeviceTest, plays_every_frame_of_an_oni_file_once) {

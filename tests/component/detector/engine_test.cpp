@@ -18,6 +18,7 @@
 #include "common/service/model_locator.hpp"
 #include "services/detector/core/detector.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -40,13 +41,10 @@ std::string absent(const std::string& engine) {
 class EngineTest : public ::testing::Test {
  protected:
   EngineTest() {
-    std::filesystem::create_directories(folder_);
-    config_.model_path = (folder_ / "tiny.onnx").string();
+    config_.model_path = folder_.write("tiny.onnx", test::tiny_network_onnx({}));
     config_.class_names = {"person", "box"};
     config_.engine = "cpu";
-    std::ofstream(config_.model_path, std::ios::binary) << test::tiny_network_onnx({});
   }
-  ~EngineTest() override { std::filesystem::remove_all(folder_); }
 
   /// Largest difference of the logits that decoding looks at, for a blob of noise.
   static double difference(const DetectorConfig& config, const std::string& engine) {
@@ -71,7 +69,7 @@ class EngineTest : public ::testing::Test {
     return largest;
   }
 
-  std::filesystem::path folder_ = std::filesystem::path(::testing::TempDir()) / "rtd_engine_test";
+  const rtd::test::TemporaryFolder folder_;
   DetectorConfig config_;
 };
 

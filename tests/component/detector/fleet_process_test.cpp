@@ -15,6 +15,7 @@
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/detector/tiny_network.hpp"
 #include "tests/support/fleet/robot_double.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_domain.hpp"
 
 namespace rtd::detector {
@@ -31,13 +32,11 @@ class FleetProcess : public ::testing::Test {
   FleetProcess() {
     options_.vendor = "fastdds";
     options_.domain = test_domain();
-    std::filesystem::create_directories(folder_);
     write_model({.free_batch = true});
   }
-  ~FleetProcess() override { std::filesystem::remove_all(folder_); }
 
   void write_model(const test::TinyNetwork& network) const {
-    std::ofstream(model_, std::ios::binary) << test::tiny_network_onnx(network);
+    folder_.write("tiny.onnx", test::tiny_network_onnx(network));
   }
   std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
     std::vector<std::string> all = {"--robots", "all",  "--domain", std::to_string(options_.domain),
@@ -55,9 +54,8 @@ class FleetProcess : public ::testing::Test {
   }
 
   bus::BusOptions options_;
-  const std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("rtd_fleet_process_" + std::to_string(getpid()));
-  const std::string model_ = (folder_ / "tiny.onnx").string();
+  const rtd::test::TemporaryFolder folder_;
+  const std::string model_ = folder_.file("tiny.onnx");
 };
 
 TEST_F(FleetProcess, answers_robots_and_ends_with_zero) {

@@ -16,6 +16,7 @@
 #include "common/camera/tum/tum_export.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_domain.hpp"
 
 namespace rtd::launcher {
@@ -41,21 +42,18 @@ class Stored {
     static const Stored stored;
     return stored;
   }
-  ~Stored() { std::filesystem::remove_all(folder_); }
-  std::string operator/(const std::string& name) const { return folder_ / name; }
+  std::string operator/(const std::string& name) const { return folder_.file(name); }
 
  private:
   Stored() {
-    std::filesystem::create_directories(folder_);
     const auto source = camera::make_source(kRoom + std::to_string(kKilledFrames));
     source->open();
     camera::export_tum(*source, folder_ / "room", kKilledFrames);
     RtdCommand convert;
     EXPECT_EQ(convert.run({"convert", "tum:" + (*this / "room"), *this / "room.mcap"}), 0) << convert.output();
-    std::ofstream(*this / "tiny.onnx", std::ios::binary) << test::tiny_network_onnx({.class_count = 80});
+    folder_.write("tiny.onnx", test::tiny_network_onnx({.class_count = 80}));
   }
-  const std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("rtd_killed_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
 };
 
 class KilledRun : public testing::TestWithParam<Killed> {

@@ -8,14 +8,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 #include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "common/process/posix_process_host.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::launcher {
 
@@ -78,33 +77,13 @@ class RtdCommand {
 };
 
 /// A folder of its own for each test, removed at the end.
-class ScratchFolder {
+class ScratchFolder : public test::TemporaryFolder {
  public:
-  ScratchFolder() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = test->name();
-    std::replace(name.begin(), name.end(), '/', '_');  // of a test with parameters
-    path_ = std::filesystem::path(testing::TempDir()) / ("rtd_" + name + "_" + std::to_string(getpid()));
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
+  std::string operator/(const std::string& name) const { return file(name); }
 };
 
 inline std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
+  return test::read_text(path);
 }
 
 /// The process of a service, by its log; -1: it has not started.

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "tests/support/run_command.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {
@@ -21,14 +22,13 @@ class McapJs : public ::testing::Test {
     if (!std::filesystem::is_directory(std::filesystem::path(MCAP_JS_FOLDER) / "node_modules/@mcap/core"))
       GTEST_SKIP() << "no @mcap/core in " << MCAP_JS_FOLDER << ": run deploy/setup.sh --viewers";
   }
-  void TearDown() override { std::filesystem::remove(file_); }
 
   rtd::testing::CommandResult run(const std::string& action) const {
     return rtd::testing::run_command("timeout 60 node '" MCAP_JS_SCRIPT "' '" MCAP_JS_FOLDER "' " + action + " '" +
                                      file_.string() + "'");
   }
-  std::filesystem::path file_ =
-      std::filesystem::path(::testing::TempDir()) / ("mcap_js" + std::to_string(getpid()) + ".mcap");
+  const rtd::test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_ / "a.mcap";
 };
 
 /// As the script prints them.

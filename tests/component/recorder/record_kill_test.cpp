@@ -17,6 +17,7 @@
 #include "common/mcap/copy.hpp"
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/component/recorder/recorder_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -132,16 +133,13 @@ int count_gaps(const NumberSender& sender, const std::vector<ReadMessage>& kept)
 
 class RecordKill : public ::testing::Test {
  protected:
-  RecordKill() : folder_(fs::temp_directory_path() / ("rtd_record_kill_" + std::to_string(getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  RecordKill() {
     bus::BusOptions options;
     options.domain = test_domain();
     options.participant_name = "kill-test";
     typed_ = bus::connect(options);
     raw_ = bus::connect_raw(options);
   }
-  ~RecordKill() override { fs::remove_all(folder_); }
 
   /// What the recorder says to have on disk.
   bus::Reader<msg::ServiceStatus> listen(Watermark& watermark) {
@@ -163,7 +161,7 @@ class RecordKill : public ::testing::Test {
     return file;
   }
 
-  const fs::path folder_;
+  const rtd::test::TemporaryFolder folder_;
   std::shared_ptr<bus::Bus> typed_;
   std::shared_ptr<bus::RawBus> raw_;
 };

@@ -19,6 +19,7 @@
 #include "tests/component/recorder/recorder_process.hpp"
 #include "tests/support/run_command.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -52,15 +53,12 @@ void wait_matched(const Writer&... writers) {
 
 class RecordProcess : public ::testing::Test {
  protected:
-  RecordProcess() : folder_(fs::temp_directory_path() / ("rtd_record_process_" + std::to_string(getpid()))) {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
+  RecordProcess() {
     options_.domain = test_domain();
     options_.participant_name = "record-test";
   }
-  ~RecordProcess() override { fs::remove_all(folder_); }
 
-  const fs::path folder_;
+  const rtd::test::TemporaryFolder folder_;
   bus::BusOptions options_;
 };
 
@@ -113,7 +111,7 @@ TEST_F(RecordProcess, four_topics_with_raw_frames_are_complete_to_the_byte) {
 
 /// Whatever its vendor (RTD_DDS) and ours are.
 TEST_F(RecordProcess, begins_and_ends_recordings_by_command) {
-  RecorderProcess recorder(test_domain(), {"--wait", "--recordings-dir", folder_});
+  RecorderProcess recorder(test_domain(), {"--wait", "--recordings-dir", folder_.path()});
   const auto raw = bus::connect_raw(options_);
   const auto laser = raw->writer({"rt/laser", "vendor_msgs::msg::dds_::Laser_"}, {});
   bus::CommandClient client(options_);

@@ -7,7 +7,6 @@
 
 #include <condition_variable>
 #include <cstring>
-#include <filesystem>
 #include <map>
 #include <mutex>
 #include <string>
@@ -130,23 +129,5 @@ inline void expect_same(const std::vector<Piece>& recorded, const std::vector<Pi
     ASSERT_EQ(a[i].publish_ns, b[i].publish_ns) << topic << " message " << i;
   }
 }
-
-/// A file of this test, removed at the end.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const std::string& name)
-      : path_((std::filesystem::path(testing::TempDir()) / ("rtd_replay_" + std::to_string(getpid()) + "_" + name))
-                  .string()) {}
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace rtd::replay

@@ -15,6 +15,7 @@
 #include "common/msg/rgbd_frame.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/component/replay/raw_recording.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_domain.hpp"
 
 namespace rtd::replay {
@@ -30,7 +31,7 @@ class ReplayProcessTest : public testing::Test {
     raw_ = bus::connect_raw(options_);
   }
   std::vector<std::string> arguments(const std::vector<std::string>& more) const {
-    std::vector<std::string> all = {file_.path(), "--domain", std::to_string(options_.domain), "--json"};
+    std::vector<std::string> all = {file_, "--domain", std::to_string(options_.domain), "--json"};
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
@@ -54,7 +55,8 @@ class ReplayProcessTest : public testing::Test {
     return pieces;
   }
 
-  TemporaryFile file_{"process.mcap"};
+  const rtd::test::TemporaryFolder folder_;
+  const std::string file_ = folder_.file("a.mcap");
   bus::BusOptions options_;
   std::shared_ptr<bus::RawBus> raw_;
   launcher::RtdCommand replay_{RTD_REPLAY};
@@ -62,7 +64,7 @@ class ReplayProcessTest : public testing::Test {
 
 TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_times) {
   const std::vector<Piece> recorded = camera_like(30);
-  write_recording(file_.path(), recorded);
+  write_recording(file_, recorded);
   Recorder recorder(*raw_);
   ASSERT_EQ(replay_.run(arguments({})), 0) << replay_.output();
   const std::vector<Piece> again = recorder.wait(recorded.size());
@@ -77,7 +79,7 @@ TEST_F(ReplayProcessTest, record_replay_record_keeps_bytes_order_and_publish_tim
 
 TEST_F(ReplayProcessTest, as_fast_as_possible_keeps_everything_too) {
   const std::vector<Piece> recorded = camera_like(40);
-  write_recording(file_.path(), recorded);
+  write_recording(file_, recorded);
   Recorder recorder(*raw_);
   ASSERT_EQ(replay_.run(arguments({"--rate", "0"})), 0) << replay_.output();
   const std::vector<Piece> again = recorder.wait(recorded.size());
@@ -86,7 +88,7 @@ TEST_F(ReplayProcessTest, as_fast_as_possible_keeps_everything_too) {
 
 /// Whatever its vendor and ours are.
 TEST_F(ReplayProcessTest, obeys_commands_of_other_programs) {
-  write_recording(file_.path(), camera_like(20));
+  write_recording(file_, camera_like(20));
   for (const std::string& vendor : bus::dds_vendors()) {
     launcher::RtdCommand replay{RTD_REPLAY};
     replay.start(arguments({"--start-paused", "--dds", vendor}));
@@ -100,7 +102,7 @@ TEST_F(ReplayProcessTest, obeys_commands_of_other_programs) {
 }
 
 TEST_F(ReplayProcessTest, ctrl_c_ends_an_endless_replay) {
-  write_recording(file_.path(), camera_like(3));
+  write_recording(file_, camera_like(3));
   replay_.start(arguments({"--loop", "--clock"}));
   Recorder recorder(*raw_);
   EXPECT_GT(recorder.wait(30).size(), 15U);
@@ -112,13 +114,13 @@ TEST_F(ReplayProcessTest, ctrl_c_ends_an_endless_replay) {
 
 /// On a terminal of its own: two steps and the end.
 TEST_F(ReplayProcessTest, keys_step_and_end_a_paused_replay_and_the_terminal_is_restored) {
-  write_recording(file_.path(), camera_like(3));
+  write_recording(file_, camera_like(3));
   Recorder recorder(*raw_);
   int terminal = -1;
   const std::string domain = std::to_string(options_.domain);
   const pid_t replay = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (replay == 0) {
-    execl(RTD_REPLAY, RTD_REPLAY, file_.path().c_str(), "--domain", domain.c_str(), "--pause", nullptr);
+    execl(RTD_REPLAY, RTD_REPLAY, file_.c_str(), "--domain", domain.c_str(), "--pause", nullptr);
     _exit(127);
   }
   termios before{}, during{}, after{};

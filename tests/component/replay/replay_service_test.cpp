@@ -12,6 +12,7 @@
 #include "common/service/config.hpp"
 #include "tests/component/replay/raw_recording.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/time_bounds.hpp"
 
 namespace rtd::replay {
@@ -31,14 +32,14 @@ class ReplayServiceTest : public testing::Test {
     options_.domain = domain++;
     raw_ = bus::connect_raw(options_);
     bus_ = bus::connect(options_);
-    config_.file = file_.path();
+    config_.file = file_;
   }
   ~ReplayServiceTest() override {
     stop_.request_stop();
     if (running_.valid()) running_.get();
   }
 
-  void record(const std::vector<Piece>& pieces) { write_recording(file_.path(), pieces); }
+  void record(const std::vector<Piece>& pieces) { write_recording(file_, pieces); }
   void start(service::Pace pace = service::Pace::kRealtime) {
     running_ = std::async(std::launch::async, [this, pace] {
       service::Heartbeat heartbeat(*bus_, ReplayService::kName, stop_);
@@ -69,7 +70,8 @@ class ReplayServiceTest : public testing::Test {
     return pieces;
   }
 
-  TemporaryFile file_{"service.mcap"};
+  const rtd::test::TemporaryFolder folder_;
+  const std::string file_ = folder_.file("a.mcap");
   bus::BusOptions options_;
   ServiceConfig config_;
   service::StopToken stop_;
@@ -197,7 +199,7 @@ TEST_F(ReplayServiceTest, says_who_does_not_answer) {
 
 TEST_F(ReplayServiceTest, a_damaged_recording_is_played_as_far_as_it_can_be_read) {
   record(frames_and_boxes());
-  std::filesystem::resize_file(file_.path(), std::filesystem::file_size(file_.path()) / 2);
+  std::filesystem::resize_file(file_, std::filesystem::file_size(file_) / 2);
   Recorder recorder(*raw_);
   config_.rate = 0;
   start();
@@ -207,8 +209,8 @@ TEST_F(ReplayServiceTest, a_damaged_recording_is_played_as_far_as_it_can_be_read
 TEST_F(ReplayServiceTest, names_what_is_wrong_with_the_recording) {
   config_.file = "/nonexistent/x.mcap";
   EXPECT_THAT(refusal(), HasSubstr("/nonexistent/x.mcap"));
-  config_.file = file_.path();
-  std::ofstream(file_.path()) << "this is no recording at all";
+  config_.file = file_;
+  std::ofstream(file_) << "this is no recording at all";
   EXPECT_THAT(refusal(), HasSubstr("not an MCAP file"));
   record({});
   EXPECT_THAT(refusal(), HasSubstr("no topics"));
@@ -222,20 +224,20 @@ TEST_F(ReplayServiceTest, refuses_types_whose_fields_were_others_when_they_were_
   for (std::size_t at = former.find(field); at != std::string::npos; at = former.find(field)) {
     former.erase(at, field.size());
   }
-  write_recording(file_.path(), frames_and_boxes(), true, former);
+  write_recording(file_, frames_and_boxes(), true, former);
   EXPECT_THAT(refusal(), AllOf(HasSubstr("rtd/features was recorded by another version of RTD-SLAM"),
                                HasSubstr("FeatureFrame has other fields"), HasSubstr("--exclude rtd/features")));
   config_.exclude = {"rtd/features"};
   start();
   EXPECT_EQ(ended(), service::kOk);
   config_.exclude.clear();
-  write_recording(file_.path(), frames_and_boxes(), true, ros2::own_idl());
+  write_recording(file_, frames_and_boxes(), true, ros2::own_idl());
   start();
   EXPECT_EQ(ended(), service::kOk);
 }
 
 TEST_F(ReplayServiceTest, publishes_the_texts_of_types_that_are_not_built_in) {
-  write_recording(file_.path(), {{"rt/boxes", kEpoch, kEpoch, cdr_of(1, 20)}}, true, "struct Blob_ { octet b; };");
+  write_recording(file_, {{"rt/boxes", kEpoch, kEpoch, cdr_of(1, 20)}}, true, "struct Blob_ { octet b; };");
   start();
   std::promise<std::vector<ros2::SchemaText>> came;
   bus::RawHandlers handlers;

@@ -81,11 +81,7 @@ std::vector<std::string> Keystores::clock_of_expired() const {
 
 PeerGroup::PeerGroup(std::string vendor)
     : vendor_(std::move(vendor)),
-      scratch_(fs::path(::testing::TempDir()) / ("rtd_security_" + std::to_string(getpid()))),
-      host_([this](const std::string& peer, const std::string& line) { read_line(peer, line); }) {
-  fs::remove_all(scratch_);
-  fs::create_directories(scratch_);
-}
+      host_([this](const std::string& peer, const std::string& line) { read_line(peer, line); }) {}
 
 PeerGroup::~PeerGroup() {
   for (const auto process : processes_) host_.terminate(process);
@@ -95,8 +91,6 @@ PeerGroup::~PeerGroup() {
       host_.wait(std::chrono::milliseconds(20));
   }
   for (const auto process : processes_) host_.kill(process);
-  std::error_code ignored;
-  fs::remove_all(scratch_, ignored);
 }
 
 void PeerGroup::start(const std::string& tag, const std::string& keystore, const std::string& enclave,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/process/posix_process_host.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::security {
 
@@ -49,7 +50,7 @@ class PeerGroup {
   bool refused(const std::string& peer) { return reports_[peer].refused; }
   const std::string& problems(const std::string& peer) { return reports_[peer].problems; }
   const std::string& log() const { return log_; }
-  const std::string& scratch() const { return scratch_; }
+  std::string scratch() const { return scratch_.path(); }
 
  private:
   struct PeerReport {
@@ -61,7 +62,8 @@ class PeerGroup {
   void read_line(const std::string& peer, const std::string& line);
 
   const std::string vendor_;
-  std::string scratch_, log_;
+  const test::TemporaryFolder scratch_;
+  std::string log_;
   std::map<std::string, PeerReport> reports_;
   std::vector<process::ProcessId> processes_;
   process::PosixProcessHost host_;

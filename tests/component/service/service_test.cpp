@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
-#include <fstream>
 #include <future>
 #include <thread>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "common/service/run_service.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/inprocess/inprocess_bus.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::service {
 namespace {
@@ -226,8 +226,8 @@ TEST_F(RunServiceTest, runs_and_returns_the_code_of_the_service) {
 }
 
 TEST_F(RunServiceTest, own_option_wins_over_set_and_set_over_file) {
-  const std::string path = ::testing::TempDir() + "/rtd_service_test.yaml";
-  std::ofstream(path) << "filter: {count: 4}\nslam: {whatever: 1}\n";
+  const rtd::test::TemporaryFolder folder;
+  const std::string path = folder.write("config.yaml", "filter: {count: 4}\nslam: {whatever: 1}\n");
   EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", path}), kOk);
   EXPECT_EQ(config_.count, 4);
   EXPECT_EQ(run({"--dds", bus::inprocess::vendor(), "--config", path, "--set", "filter.count=5"}), kOk);
@@ -298,8 +298,8 @@ TEST_F(BusOptionsTest, peers_and_interfaces_are_lists) {
 }
 
 TEST_F(BusOptionsTest, a_file_wins_over_the_profile_and_own_options_over_both) {
-  const std::string path = ::testing::TempDir() + "/rtd_bus_options_test.yaml";
-  std::ofstream(path) << "bus: {network: {multicast: false, peers: [a]}}\n";
+  const rtd::test::TemporaryFolder folder;
+  const std::string path = folder.write("profile.yaml", "bus: {network: {multicast: false, peers: [a]}}\n");
   EXPECT_FALSE(network_of({"--profile", "lan", "--config", path}).multicast);
   EXPECT_THAT(network_of({"--profile", path}).peers, ElementsAre("a"));
   EXPECT_THAT(network_of({"--profile", path, "--set", "bus.network.peers=[b]"}).peers, ElementsAre("b"));

@@ -12,6 +12,7 @@
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
 #include "common/service/trace.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::service {
 namespace {
@@ -48,8 +49,6 @@ namespace fs = std::filesystem;
 
 class TraceTest : public ::testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
   std::vector<nlohmann::json> written() const {
     std::vector<nlohmann::json> events;
     for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -59,11 +58,11 @@ class TraceTest : public ::testing::Test {
     return events;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("rtd_spans_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(TraceTest, writes_spans_of_frames_in_microseconds) {
-  { Trace(folder_, "slam").span("pose", 5'000, 7'500, 12); }
+  { Trace(folder_.path(), "slam").span("pose", 5'000, 7'500, 12); }
   const auto events = written();
   ASSERT_EQ(events.size(), 2U);
   EXPECT_EQ(events[0]["args"]["name"], "rtd-slam");
@@ -77,7 +76,7 @@ TEST_F(TraceTest, writes_spans_of_frames_in_microseconds) {
 TEST_F(TraceTest, stages_follow_one_another_and_those_without_time_are_left_out) {
   {
     const std::vector<TraceStage> stages = {{"a", 1}, {"b", 0}, {"c", 2}};
-    Trace(folder_, "slam").stages(1'000'000, stages, 3);
+    Trace(folder_.path(), "slam").stages(1'000'000, stages, 3);
   }
   const auto events = written();
   ASSERT_EQ(events.size(), 3U);
@@ -87,7 +86,7 @@ TEST_F(TraceTest, stages_follow_one_another_and_those_without_time_are_left_out)
 }
 
 TEST_F(TraceTest, ways_may_overlap_so_each_has_an_id) {
-  { Trace(folder_, "slam").async_span("camera to pose", 1'000, 3'000, 4); }
+  { Trace(folder_.path(), "slam").async_span("camera to pose", 1'000, 3'000, 4); }
   const auto events = written();
   ASSERT_EQ(events.size(), 3U);
   EXPECT_EQ(events[1]["ph"], "b");
@@ -98,7 +97,7 @@ TEST_F(TraceTest, ways_may_overlap_so_each_has_an_id) {
 TEST_F(TraceTest, a_span_lasts_as_long_as_its_object) {
   const std::int64_t before_ns = monotonic_ns();
   {
-    Trace trace(folder_, "dense");
+    Trace trace(folder_.path(), "dense");
     const TraceSpan span(trace, "fuse", 1);
   }
   const auto events = written();

@@ -19,6 +19,7 @@
 #include "tests/support/feature_world.hpp"
 #include "tests/support/service_fixture.hpp"
 #include "tests/support/settled_map.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -329,8 +330,7 @@ TEST_F(MapServiceTest, keeps_tracking_and_reports_when_the_map_cannot_be_saved) 
 }
 
 TEST(MapKeeper, saves_to_any_file_while_the_system_runs) {
-  const auto folder = std::filesystem::temp_directory_path() / "rtd_map_keeper_test";
-  std::filesystem::create_directories(folder);
+  const rtd::test::TemporaryFolder folder;
   SlamSystem slam(test_support::settled(), MappingMode::kSynchronous, [] { return 0; });
   MapKeeper keeper(MapFileConfig{}, slam);
   EXPECT_THAT([&] { keeper.save_to(folder / "empty.rtdmap"); },
@@ -347,7 +347,6 @@ TEST(MapKeeper, saves_to_any_file_while_the_system_runs) {
   for (std::uint64_t seq = 30; seq < 40; ++seq) slam.process(*world.view(seq));
   slam.load_map(load_map_file(folder / "room.rtdmap"));
   EXPECT_EQ(slam.keyframes().size(), saved.keyframes);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

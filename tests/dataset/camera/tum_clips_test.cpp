@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
 #include "common/camera/source_factory.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -61,19 +61,17 @@ TEST_F(TumClips, plays_original_pngs_of_a_family_without_calibration_file) {
 }
 
 TEST_F(TumClips, associates_the_lists_and_skips_images_that_are_not_there) {
-  const fs::path folder = fs::temp_directory_path() / ("fr1_desk_lists_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const rtd::test::TemporaryFolder scratch;
+  const fs::path folder = scratch / "fr1_desk_lists";
+  fs::create_directory(folder);
   for (const char* name : {"rgb", "depth", "rgb.txt", "depth.txt"}) {
     fs::create_symlink(fs::absolute(data_ / "fr1_desk_9" / name), folder / name);
   }
-  {
-    const auto source = make_source("tum:" + folder.string() + "?outside=1");
-    int frames = 0;
-    while (source->next()) ++frames;
-    EXPECT_EQ(frames, 9) << "the lists name the whole sequence, nine pairs are there";
-    EXPECT_GT(source->counters().of(SkipReason::kColorUnreadable), 500U);
-  }
-  fs::remove_all(folder);
+  const auto source = make_source("tum:" + folder.string() + "?outside=1");
+  int frames = 0;
+  while (source->next()) ++frames;
+  EXPECT_EQ(frames, 9) << "the lists name the whole sequence, nine pairs are there";
+  EXPECT_GT(source->counters().of(SkipReason::kColorUnreadable), 500U);
 }
 
 TEST_F(TumClips, reads_the_masks_of_rendered_clips) {

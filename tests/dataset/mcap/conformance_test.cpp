@@ -15,6 +15,7 @@
 #include "common/mcap/stream_reader.hpp"
 #include "common/mcap/writer.hpp"
 #include "tests/support/run_command.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::mcap {
 namespace {
@@ -309,8 +310,7 @@ class Conformance : public ::testing::Test {
 };
 
 TEST_F(Conformance, writes_every_file_byte_by_byte) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "mcap_conformance";
-  std::filesystem::create_directories(folder);
+  const rtd::test::TemporaryFolder folder;
   std::ofstream sums(folder / "sums");
   std::size_t by_sum = 0;
   for (const ConformanceCase& test : cases()) {
@@ -333,7 +333,6 @@ TEST_F(Conformance, writes_every_file_byte_by_byte) {
         rtd::testing::run_command("sha256sum --strict --quiet -c '" + (folder / "sums").string() + "'");
     EXPECT_EQ(check.exit_code, 0) << check.output;
   }
-  std::filesystem::remove_all(folder);
 }
 
 // The files are those that the test above has shown to be the set's, byte by byte.

@@ -34,7 +34,7 @@ io::Bytes sample(const fs::path& path, const std::string& statements) {
                     sqlite3_exec(database, statements.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
   sqlite3_close(database);
   if (!made) throw std::runtime_error("SQLite cannot write " + path.string());
-  return fuzz::bytes_of(fuzz::content_of(path));
+  return fuzz::bytes_of(rtd::test::read_text(path));
 }
 
 std::vector<io::Bytes> seeds(const fs::path& path) {

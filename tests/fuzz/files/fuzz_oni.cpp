@@ -21,7 +21,7 @@ io::Bytes sample(int frames) {
       writer.depth(static_cast<std::uint64_t>(i) * 33'333, cv::Mat::zeros(6, 8, CV_16UC1));
     }
   }
-  return fuzz::bytes_of(fuzz::content_of(file.path()));
+  return fuzz::bytes_of(rtd::test::read_text(file.path()));
 }
 
 std::string try_input(const io::Bytes& input, std::uint64_t& passed) {

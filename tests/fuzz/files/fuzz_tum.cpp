@@ -12,6 +12,7 @@
 #include "common/geometry/trajectory.hpp"
 #include "common/msg/stamps.hpp"
 #include "tests/fuzz/fuzz_loop.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -67,7 +68,6 @@ std::vector<std::string> words() {
 /// The folder that the readers are given.
 class Folder {
  public:
-  Folder() { std::filesystem::create_directory(path()); }
   const std::filesystem::path& path() const { return folder_.path(); }
   void fill(const std::string& input) const {
     std::vector<std::string> parts(1);
@@ -76,15 +76,17 @@ class Folder {
       if (letter == '\0' && parts.size() < 3) parts.emplace_back();
     }
     std::filesystem::remove(path() / "associations.txt");
-    if (parts.size() == 1) return put("associations.txt", parts[0]);
-    put("rgb.txt", parts[0]);
-    put("depth.txt", parts[1]);
-    put("groundtruth.txt", parts.size() > 2 ? parts[2] : "");
+    if (parts.size() == 1) {
+      folder_.write("associations.txt", parts[0]);
+      return;
+    }
+    folder_.write("rgb.txt", parts[0]);
+    folder_.write("depth.txt", parts[1]);
+    folder_.write("groundtruth.txt", parts.size() > 2 ? parts[2] : "");
   }
 
  private:
-  void put(const char* name, const std::string& text) const { std::ofstream(path() / name, std::ios::binary) << text; }
-  fuzz::FuzzFile folder_{"_tum"};
+  rtd::test::TemporaryFolder folder_;
 };
 
 std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {

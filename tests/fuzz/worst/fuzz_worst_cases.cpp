@@ -18,6 +18,7 @@
 
 #include "tests/fuzz/worst/worst_case.hpp"
 #include "tests/support/sanitizers.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::worst {
 namespace {
@@ -110,10 +111,7 @@ std::string repeated(const std::string& part, std::size_t bytes) {
 
 int main(int argc, char** argv) {
   const std::size_t bytes = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 150'000;
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("rtd_worst_" + std::to_string(getpid()));
-  std::filesystem::create_directory(folder);
+  const rtd::test::TemporaryFolder folder;
   const int failed = rtd::worst::check(bytes, argc > 2 ? argv[2] : "", folder);
-  std::filesystem::remove_all(folder);
   return failed == 0 ? 0 : 1;
 }

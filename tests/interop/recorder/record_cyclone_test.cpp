@@ -9,6 +9,7 @@
 
 #include "tests/component/recorder/recorded_file.hpp"
 #include "tests/component/recorder/recorder_process.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -27,8 +28,7 @@ std::uint32_t field(const ReadMessage& message, std::size_t index) {
 
 TEST(RecordCyclone, types_unknown_to_this_program_are_recorded) {
   constexpr std::uint32_t kMessages = 100;
-  const fs::path folder = fs::temp_directory_path() / ("rtd_record_cyclone_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const rtd::test::TemporaryFolder folder;
   RecorderProcess recorder(test_domain(), {"-o", folder / "run.mcap"});
   std::ostringstream command;
   command << "CYCLONEDDS_URI=\"" << kOnLoopback << "\" timeout 30 " CYCLONE_WRITER_PATH " " << test_domain() << ' '
@@ -37,7 +37,6 @@ TEST(RecordCyclone, types_unknown_to_this_program_are_recorded) {
   EXPECT_EQ(recorder.end_by(SIGINT), 0);
 
   const RecordedFile file = read_recording(folder / "run.mcap");
-  fs::remove_all(folder);
   const auto& plain = file.topics.at("/unknown/plain");
   const auto& keyed = file.topics.at("/unknown/keyed");
   EXPECT_EQ(file.type_of.at("/unknown/plain"), "unknown_msgs/msg/Plain");

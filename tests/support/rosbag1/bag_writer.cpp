@@ -4,9 +4,7 @@
 
 #include <bzlib.h>
 #include <lz4frame.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -108,13 +106,6 @@ std::string BagWriter::bag_header(std::uint64_t index_pos, const Fields& more) {
       {"op", op(3)}, {"index_pos", little_endian(index_pos, 8)}, {"conn_count", number(0)}, {"chunk_count", number(0)}};
   fields.insert(fields.end(), more.begin(), more.end());
   return bag_record(fields, std::string(kPadded - fields_text(fields).size(), ' '));
-}
-
-TemporaryFile::TemporaryFile(const std::string& name, const std::string& bytes) {
-  static int count = 0;
-  path_ = std::filesystem::temp_directory_path() /
-          ("rtd_" + std::to_string(getpid()) + "_" + std::to_string(count++) + "_" + name);
-  std::ofstream(path_, std::ios::binary) << bytes;
 }
 
 }  // namespace rtd::test

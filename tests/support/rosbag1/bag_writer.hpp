@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace rtd::test {
 
 /// Fields of a record's header.
@@ -46,13 +48,11 @@ class BagWriter {
 /// Writes bytes to a file of its own that goes with the object.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& bytes);
-  ~TemporaryFile() { std::filesystem::remove(path_); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile(const std::string& name, const std::string& bytes) : path_(folder_.write(name, bytes)) {}
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  TemporaryFolder folder_;
   std::filesystem::path path_;
 };
 

@@ -13,6 +13,7 @@
 #include "services/detector/core/engine.hpp"
 #include "tests/bench/rtd_bench/detector/detector_command.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::bench {
 namespace {
@@ -23,19 +24,13 @@ using namespace ::testing;
 class DetectorBench : public testing::Test {
  protected:
   DetectorBench() {
-    std::filesystem::create_directories(folder_ / "images");
+    std::filesystem::create_directory(folder_ / "images");
     for (int i = 0; i < 3; ++i) {
       images_.push_back(cv::Mat::zeros(64, 64, CV_8UC3));
       images_.back()(cv::Rect(8 * i, 24, 8, 8)).setTo(cv::Scalar::all(255));
     }
     options_.batches = {1, 4};
-    options_.model_path = write("free.onnx", test::tiny_network_onnx({.free_batch = true, .metadata = names_}));
-  }
-  ~DetectorBench() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-    return (folder_ / name).string();
+    options_.model_path = folder_.write("free.onnx", test::tiny_network_onnx({.free_batch = true, .metadata = names_}));
   }
   DetectorComparison compare() const {
     return bench_detector(images_, options_, [] {});
@@ -56,7 +51,7 @@ class DetectorBench : public testing::Test {
     return {code, out.str(), err.str()};
   }
 
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "rtd_detector_bench_test";
+  const rtd::test::TemporaryFolder folder_;
   const std::map<std::string, std::string> names_ = {{"rtd.class_names", "person\nbox"}};
   std::vector<cv::Mat> images_;
   DetectorOptions options_;
@@ -101,7 +96,7 @@ TEST_F(DetectorBench, an_engine_that_is_not_there_is_a_failure_of_its_cases) {
 }
 
 TEST_F(DetectorBench, a_network_of_one_image_gives_figures_for_one_and_says_how_to_free_it) {
-  options_.model_path = write("fixed.onnx", test::tiny_network_onnx({.metadata = names_}));
+  options_.model_path = folder_.write("fixed.onnx", test::tiny_network_onnx({.metadata = names_}));
   const DetectorComparison comparison = compare();
   EXPECT_THAT(comparison.cases[0].failure, IsEmpty());
   EXPECT_THAT(comparison.cases[1].failure, HasSubstr("--free-batch"));
@@ -112,15 +107,15 @@ TEST_F(DetectorBench, refuses_what_gives_no_figures_at_all) {
   options_.engines = {"gpu"};
   EXPECT_THROW(compare(), detector::EngineError);
   options_.engines = {"cpu"};
-  options_.model_path = write("broken.onnx", "<html>");
+  options_.model_path = folder_.write("broken.onnx", "<html>");
   EXPECT_THROW(compare(), detector::ModelError);
 }
 
 TEST_F(DetectorBench, the_command_writes_table_and_json) {
-  cv::imwrite((folder_ / "images/a.png").string(), images_[0]);
-  write("images/notes.txt", "no image");
-  const std::string json = (folder_ / "out.json").string();
-  const Outcome outcome = run({"--images", (folder_ / "images").string(), "--batch", "1,2", "--json", json});
+  cv::imwrite(folder_.file("images/a.png"), images_[0]);
+  folder_.write("images/notes.txt", "no image");
+  const std::string json = folder_.file("out.json");
+  const Outcome outcome = run({"--images", folder_.file("images"), "--batch", "1,2", "--json", json});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("free.onnx, 64x64, 1 image,"), HasSubstr("1 of 1")));
   EXPECT_EQ(nlohmann::json::parse(std::ifstream(json))["cases"][1]["batch"], 2);
@@ -129,7 +124,7 @@ TEST_F(DetectorBench, the_command_writes_table_and_json) {
 TEST_F(DetectorBench, the_command_names_what_is_wrong) {
   EXPECT_EQ(run({"--engines", "gpu"}).code, 2);
   EXPECT_THAT(run({"--images", "/nowhere"}).err, HasSubstr("--images /nowhere: there is no such folder"));
-  EXPECT_THAT(run({"--images", (folder_ / "images").string()}).err, HasSubstr("has no images"));
+  EXPECT_THAT(run({"--images", folder_.file("images")}).err, HasSubstr("has no images"));
   const Outcome unwritable = run({"--json", "/nowhere/out.json"});
   EXPECT_EQ(unwritable.code, 2);
   EXPECT_THAT(unwritable.err, HasSubstr("--json /nowhere/out.json: cannot be written"));
@@ -137,9 +132,9 @@ TEST_F(DetectorBench, the_command_names_what_is_wrong) {
 }
 
 TEST_F(DetectorBench, serves_robots_with_every_engine_and_batch) {
-  cv::imwrite((folder_ / "images/a.png").string(), images_[0]);
-  const Outcome done = run({"--images", (folder_ / "images").string(), "--robots", "3", "--batch", "1,4", "--rate",
-                            "20", "--seconds", "0.5", "--json", (folder_ / "robots.json").string()});
+  cv::imwrite(folder_.file("images/a.png"), images_[0]);
+  const Outcome done = run({"--images", folder_.file("images"), "--robots", "3", "--batch", "1,4", "--rate", "20",
+                            "--seconds", "0.5", "--json", folder_.file("robots.json")});
   EXPECT_EQ(done.code, 0) << done.err;
   EXPECT_THAT(done.out, HasSubstr("robots that send 20 JPEG images a second each"));
   std::ifstream file(folder_ / "robots.json");

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/network.hpp"
 #include "common/bus/port_check.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -91,11 +91,9 @@ TEST(HostChecks, what_could_not_be_read_is_not_complained_about) {
 
 TEST(HostChecks, ports_of_another_user_in_the_domain_are_named_with_udp_in_their_place) {
   if (geteuid() != 0) GTEST_SKIP() << "only root makes files of another user";
-  const std::filesystem::path shm = std::filesystem::temp_directory_path() / ("rtd_shm_" + std::to_string(getpid()));
-  std::filesystem::create_directory(shm);
+  const rtd::test::TemporaryFolder shm;
   const auto add = [&](const std::string& name, uid_t user, mode_t mode) {
-    const std::string path = shm / name;
-    std::ofstream(path) << 'x';
+    const std::string path = shm.write(name, "x");
     EXPECT_EQ(chmod(path.c_str(), mode) + chown(path.c_str(), user, user), 0);
   };
   add("fastrtps_port24161", 0, 0644);      // ours
@@ -106,15 +104,14 @@ TEST(HostChecks, ports_of_another_user_in_the_domain_are_named_with_udp_in_their
   BusOptions options;
   options.vendor = "fastdds";
   options.domain = 67;
-  EXPECT_EQ(why_not_shared_memory(options, read_host_limits(shm)), "");
+  EXPECT_EQ(why_not_shared_memory(options, read_host_limits(shm.path())), "");
   add("fastrtps_port24165", 65534, 0644);
-  const HostLimits limits = read_host_limits(shm);
+  const HostLimits limits = read_host_limits(shm.path());
   EXPECT_THAT(why_not_shared_memory(options, limits),
               AllOf(HasSubstr("user 65534"), HasSubstr("domain 67"), HasSubstr("port 24165"), HasSubstr("UDP")));
   EXPECT_THAT(host_warnings(options, limits), testing::Contains(HasSubstr("user 65534")));
   options.vendor = "cyclonedds";
   EXPECT_EQ(why_not_shared_memory(options, limits), "");
-  std::filesystem::remove_all(shm);
 }
 
 TEST(HostChecks, the_inprocess_bus_needs_nothing_of_the_host) {
@@ -177,7 +174,8 @@ TEST(PortCheck, a_shared_port_is_accepted) {
 }
 
 TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
-  const std::string path = ::testing::TempDir() + "rtd_udp_table_" + std::to_string(getpid());
+  const rtd::test::TemporaryFolder folder;
+  const std::string path = folder.file("udp");
   std::ofstream(path)
       << "  sl  local_address rem_address   st tx_queue rx_queue\n"
       << "  10: 0100007F:1CF2 00000000:0000 07 0:0 00:0 0 0 0 1\n"  // 7410
@@ -204,7 +202,6 @@ TEST(PortCheck, ports_of_participants_are_read_from_the_kernel_table) {
   options.network.loopback_only = false;
   EXPECT_FALSE(surely_empty(options, path)) << "on another host";
   EXPECT_EQ(free_participant_ports(0, "/no/such/table"), kPeerParticipants);
-  std::remove(path.c_str());
 }
 
 TEST(PortCheck, without_a_free_port_for_peers_no_process_joins_a_network) {

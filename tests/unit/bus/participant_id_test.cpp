@@ -26,6 +26,7 @@
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/raw_bus.hpp"
 #include "common/io/fd_writing.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::bus::fastdds {
 namespace {
@@ -40,10 +41,8 @@ std::string port_name(std::uint32_t id) {
 
 class ParticipantId : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
   void add_port(std::uint32_t id) { std::ofstream(folder_ / port_name(id)); }
-  fs::path folder_ = fs::temp_directory_path() / ("rtd_participant_id_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(ParticipantId, follows_the_process_id) {

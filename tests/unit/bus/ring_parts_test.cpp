@@ -9,6 +9,7 @@
 
 #include "common/bus/fastdds/screening/ring_claims.hpp"
 #include "common/bus/host/ring_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -47,14 +48,10 @@ Bytes message_of(const Bytes& submessages) {
 
 class RingClaimsTest : public testing::Test {
  protected:
-  void SetUp() override {
-    fs::create_directories(folder_);
-    std::ofstream(folder_ / "fast_datasharing_01.0f.00.00.00.00.00.00.00.00.00.00_0.0.1.1c");
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { folder_.write("fast_datasharing_01.0f.00.00.00.00.00.00.00.00.00.00_0.0.1.1c", ""); }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("rtd_ring_claims_" + std::to_string(getpid()));
-  const RingClaims claims_{folder_, 0x0807060504030201};
+  const rtd::test::TemporaryFolder folder_;
+  const RingClaims claims_{folder_.path(), 0x0807060504030201};
 };
 
 TEST_F(RingClaimsTest, of_an_endpoint_with_a_file_in_the_folder_stay) {
@@ -99,9 +96,7 @@ namespace fs = std::filesystem;
 
 class RingFolder : public testing::Test {
  protected:
-  void SetUp() override { fs::create_directories(scratch_); }
-  void TearDown() override { fs::remove_all(scratch_); }
-  const fs::path scratch_ = fs::temp_directory_path() / ("rtd_ring_folder_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder scratch_;
   const std::string asked_ = scratch_ / "rings";
 };
 

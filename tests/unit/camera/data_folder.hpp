@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/camera/frame_source.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera::layouts {
 
@@ -19,17 +20,9 @@ inline constexpr const char* kIntrinsics = "?intrinsics=52,53,31.5,23.5";
 /// A folder below a temporary one, removed with the object.
 class DataFolder {
  public:
-  explicit DataFolder(const std::string& name = "kitchen") {
-    static int count = 0;
-    root_ = std::filesystem::temp_directory_path() /
-            ("rtd_layouts_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    path_ = root_ / name;
+  explicit DataFolder(const std::string& name = "kitchen") : path_(root_ / name) {
     std::filesystem::create_directories(path_);
   }
-  ~DataFolder() { std::filesystem::remove_all(root_); }
-  DataFolder(const DataFolder&) = delete;
-  DataFolder& operator=(const DataFolder&) = delete;
-
   const std::filesystem::path& path() const { return path_; }
   std::string uri(const std::string& parameters = "") const { return "folder:" + path_.string() + parameters; }
   void write(const std::string& file, const std::string& text) const {
@@ -56,7 +49,8 @@ class DataFolder {
   }
 
  private:
-  std::filesystem::path root_, path_;
+  rtd::test::TemporaryFolder root_;
+  std::filesystem::path path_;
 };
 
 /// Metres at a pixel.

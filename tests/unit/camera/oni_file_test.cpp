@@ -3,11 +3,11 @@
 #include "services/camera/openni2/oni_file.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <sstream>
 
 #include "tests/support/oni_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::camera {
 namespace {
@@ -21,16 +21,15 @@ constexpr std::size_t kFirstRecord = 24, kFields = 12, kPayload = 16;
 class OniFile : public ::testing::Test {
  protected:
   OniFile() {
-    const auto path = std::filesystem::temp_directory_path() / ("rtd_oni_" + std::to_string(getpid()) + ".oni");
+    const rtd::test::TemporaryFolder folder;
+    const std::string path = folder.file("walk.oni");
     {
-      rtd::test::OniWriter writer(path.string(), {8, 6}, 30);
+      rtd::test::OniWriter writer(path, {8, 6}, 30);
       writer.color(0, cv::Mat::zeros(6, 8, CV_8UC3));
       writer.depth(0, cv::Mat::zeros(6, 8, CV_16UC1));
     }
     require_oni_file(path);
-    std::ifstream file(path, std::ios::binary);
-    bytes_.assign(std::istreambuf_iterator<char>(file), {});
-    std::filesystem::remove(path);
+    bytes_ = rtd::test::read_text(path);
   }
 
   void set(std::size_t at, std::uint32_t value) {

@@ -9,6 +9,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace rtd::camera::test {
 
 /// A TUM folder of 64 x 48 px frames that a test writes and damages; removed with the object.
@@ -16,18 +18,10 @@ class SequenceFolder {
  public:
   static constexpr int kWidth = 64, kHeight = 48;
 
-  explicit SequenceFolder(const std::string& name = "sequence") {
-    static int count = 0;
-    root_ = std::filesystem::temp_directory_path() /
-            ("rtd_camera_" + std::to_string(getpid()) + "_" + std::to_string(count++));
-    path_ = root_ / name;
+  explicit SequenceFolder(const std::string& name = "sequence") : path_(root_ / name) {
     std::filesystem::create_directories(path_ / "rgb");
     std::filesystem::create_directories(path_ / "depth");
   }
-  ~SequenceFolder() { std::filesystem::remove_all(root_); }
-  SequenceFolder(const SequenceFolder&) = delete;
-  SequenceFolder& operator=(const SequenceFolder&) = delete;
-
   const std::filesystem::path& path() const { return path_; }
   std::string uri() const { return "tum:" + path_.string(); }
 
@@ -67,7 +61,8 @@ class SequenceFolder {
   }
 
  private:
-  std::filesystem::path root_, path_;
+  rtd::test::TemporaryFolder root_;
+  std::filesystem::path path_;
 };
 
 }  // namespace rtd::camera::test

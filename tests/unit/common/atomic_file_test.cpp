@@ -18,7 +18,7 @@
 #include "common/io/named_files.hpp"
 #include "common/io/text.hpp"
 #include "common/process/out_folder.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::io {
 namespace {
@@ -42,7 +42,7 @@ class AtomicFileTest : public ::testing::Test {
     return status.st_mode & 0777U;
   }
 
-  const eval::testing_support::TemporaryFolder folder_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(AtomicFileTest, appears_whole_and_only_when_committed) {
@@ -224,7 +224,7 @@ class NamedFilesTest : public ::testing::Test {
     }
   }
 
-  const eval::testing_support::TemporaryFolder folder_;
+  const rtd::test::TemporaryFolder folder_;
   const NamedFiles maps_{folder_.path(), kMaps};
 };
 

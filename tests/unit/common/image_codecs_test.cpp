@@ -20,6 +20,7 @@
 #include "common/vision/image_file.hpp"
 #include "common/vision/jpeg_size.hpp"
 #include "common/vision/plain_png.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/support/time_bounds.hpp"
 
 namespace rtd::vision {
@@ -204,15 +205,13 @@ TEST(ImageCodecs, encode_to_the_bytes_of_opencv) {
 }
 
 TEST(ImageCodecs, write_and_read_files_by_their_extension) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("rtd_image_codecs_" + std::to_string(getpid()));
-  fs::create_directories(folder);
+  const rtd::test::TemporaryFolder folder;
   const cv::Mat depth = scene(CV_16UC1);
   ASSERT_TRUE(write_image(folder / "a.PNG", depth));
   EXPECT_TRUE(same(read_image(folder / "a.PNG", {.pixels = PixelsAs::kStored}).pixels, depth));
   EXPECT_TRUE(write_image(folder / "a.jpeg", scene(CV_8UC3)));
   EXPECT_FALSE(write_image(folder / "a.bmp", scene(CV_8UC3)));
   EXPECT_THAT(read_image("/nowhere.png").problem, testing::HasSubstr("cannot be read"));
-  fs::remove_all(folder);
 }
 
 TEST(ImageCodecs, refuse_sizes_that_the_bytes_cannot_hold_before_memory_is_taken) {

@@ -11,6 +11,7 @@
 #include "common/io/atomic_file.hpp"
 #include "common/io/folder_walk.hpp"
 #include "common/io/text.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::io {
 namespace {
@@ -24,14 +25,10 @@ using testing::HasSubstr;
 class StrangersFolder : public ::testing::Test {
  protected:
   StrangersFolder() {
-    std::string name = (fs::temp_directory_path() / "rtd_stranger_XXXXXX").string();
-    root_ = mkdtemp(name.data());
-    folder_ = root_ / "folder";
     fs::create_directories(folder_ / "in");
     write_file(folder_ / "in/there.txt", "content");
     write_file(root_ / "secret.txt", "secret");
   }
-  ~StrangersFolder() override { fs::remove_all(root_); }
 
   static std::string problem(const fs::path& file, const fs::path& below = {}) {
     try {
@@ -42,7 +39,8 @@ class StrangersFolder : public ::testing::Test {
     return "";
   }
 
-  fs::path root_, folder_;
+  const rtd::test::TemporaryFolder root_;
+  const fs::path folder_ = root_ / "folder";
 };
 
 TEST_F(StrangersFolder, what_is_no_regular_file_is_refused_without_waiting) {

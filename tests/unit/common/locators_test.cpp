@@ -3,11 +3,11 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::service {
 namespace {
@@ -20,20 +20,8 @@ const std::string kUsualFile = kKnownModels.front().file;
 
 class ModelLocator : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_locator_") + info->name());
-    std::filesystem::remove_all(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string make(const std::string& relative) const {
-    const std::filesystem::path path = folder_ / relative;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << "weights";
-    return path.string();
-  }
-  std::string in_folder(const std::string& relative) const { return (folder_ / relative).string(); }
+  std::string make(const std::string& relative) const { return folder_.write(relative, "weights"); }
+  std::string in_folder(const std::string& relative) const { return folder_.file(relative); }
   EnvironmentReader environment(std::map<std::string, std::string> values) const {
     values.emplace("XDG_DATA_DIRS", in_folder("local") + ":" + in_folder("share"));  // not those of this host
     return [values = std::move(values)](const std::string& name) -> std::optional<std::string> {
@@ -45,7 +33,7 @@ class ModelLocator : public ::testing::Test {
     return environment(
         {{"RTD_MODEL_DIR", in_folder("models")}, {"XDG_CACHE_HOME", in_folder("xdg")}, {"HOME", in_folder("home")}});
   }
-  std::filesystem::path folder_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(ModelLocator, looks_in_the_model_folder_the_cache_and_the_folders_for_all_users_in_this_order) {
@@ -139,19 +127,12 @@ namespace fs = std::filesystem;
 
 class OnnxruntimeLocator : public ::testing::Test {
  protected:
-  OnnxruntimeLocator() { fs::remove_all(folder_); }
-  ~OnnxruntimeLocator() override { fs::remove_all(folder_); }
-  std::string make(const std::string& relative) const {
-    const fs::path path = folder_ / relative;
-    fs::create_directories(path.parent_path());
-    std::ofstream(path) << "library";
-    return path.string();
-  }
+  std::string make(const std::string& relative) const { return folder_.write(relative, "library"); }
   std::string find(const std::string& named = {}) const {
     return find_onnxruntime([&](const std::string&) { return std::optional(named); },
                             {folder_ / "missing", folder_ / "first", folder_ / "second"});
   }
-  const fs::path folder_ = fs::path(::testing::TempDir()) / "rtd_onnxruntime_locator";
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(OnnxruntimeLocator, finds_none_where_there_is_none) {

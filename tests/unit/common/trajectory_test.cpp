@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <random>
 #include <set>
 #include <sstream>
@@ -15,6 +14,7 @@
 
 #include "common/geometry/pose_list.hpp"
 #include "common/msg/stamps.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::geometry {
 namespace {
@@ -131,10 +131,10 @@ TEST(TumTrajectory, missing_file_and_folder_are_named) {
 }
 
 TEST(FrameStamps, are_in_the_names_of_a_list_without_stamps) {
-  const std::filesystem::path file = std::filesystem::temp_directory_path() / "rtd_names_only.txt";
-  std::ofstream(file) << "\xEF\xBB\xBFrgb/1305031102.175304.png\r\nrgb/1305031102.211214.png\r\n";
+  const rtd::test::TemporaryFolder folder;
+  const std::string file =
+      folder.write("rgb.txt", "\xEF\xBB\xBFrgb/1305031102.175304.png\r\nrgb/1305031102.211214.png\r\n");
   EXPECT_EQ(read_frame_stamps(file), (std::vector<std::int64_t>{1305031102175304000, 1305031102211214000}));
-  std::filesystem::remove(file);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "services/detector/core/detector_config.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -21,18 +22,7 @@ using namespace ::testing;
 
 class DetectorTest : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_detector_") + info->name());
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& bytes) const {
-    const std::filesystem::path path = folder_ / "model.onnx";
-    std::ofstream(path, std::ios::binary) << bytes;
-    return path.string();
-  }
+  std::string write(const std::string& bytes) const { return folder_.write("model.onnx", bytes); }
   /// One anchor size for all heads would collide in NMS: only the stride-8 head can pass (anchors of the others too
   /// big).
   DetectorConfig config(const test::TinyNetwork& network) const {
@@ -41,7 +31,7 @@ class DetectorTest : public ::testing::Test {
     config.class_names = {"person", "box"};
     return config;
   }
-  std::filesystem::path folder_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 /// A black image in which exactly the cell (row, col) of stride 8 is white: too little for the larger strides.
@@ -196,7 +186,7 @@ TEST_F(DetectorTest, refuses_files_that_are_no_model) {
     const std::string path = write(bytes);
     EXPECT_THAT([&] { load(path); }, ThrowsMessage<ModelError>(HasSubstr(path)));
   }
-  EXPECT_THAT([&] { load(folder_.string()); }, ThrowsMessage<ModelError>(HasSubstr(folder_.string())));
+  EXPECT_THAT([&] { load(folder_.path().string()); }, ThrowsMessage<ModelError>(HasSubstr(folder_.path().string())));
 }
 
 TEST_F(DetectorTest, refuses_a_model_cut_off_anywhere) {

@@ -6,13 +6,13 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
 #include "services/detector/core/detector.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -26,18 +26,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class BrokenNetwork : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
   /// A network of 640 x 480 with 18,900 cells, each weight replaced.
   Detector detector(const std::function<float(float)>& spoil) {
-    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = std::string("rtd_broken_") + info->name() + ".onnx";
-    std::replace(name.begin(), name.end(), '/', '_');
-    path_ = std::filesystem::temp_directory_path() / name;
-    std::ofstream(path_, std::ios::binary)
-        << test::tiny_network_onnx({.width_px = 640, .height_px = 480, .spoil = spoil});
     DetectorConfig config;
-    config.model_path = path_.string();
+    config.model_path =
+        folder_.write("broken.onnx", test::tiny_network_onnx({.width_px = 640, .height_px = 480, .spoil = spoil}));
     config.class_names = {"person", "box"};
     config.decode.confidence_threshold = config.decode.objectness_threshold = 0.01;
     return Detector(config);
@@ -58,7 +51,7 @@ class BrokenNetwork : public ::testing::Test {
   }
 
  private:
-  std::filesystem::path path_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(BrokenNetwork, of_nothing_but_nan_finds_nothing) {
@@ -141,15 +134,12 @@ TEST_P(PermissiveModel, with_other_class_names_is_refused_with_what_fits) {
 }
 
 TEST_P(PermissiveModel, cut_off_anywhere_is_refused_by_its_name) {
-  std::ifstream file(config_.model_path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const fs::path cut = fs::path(::testing::TempDir()) / "rtd_cut_off.onnx";
-  config_.model_path = cut.string();
+  const rtd::test::TemporaryFolder folder;
+  const std::string bytes = rtd::test::read_text(config_.model_path);
   for (std::size_t size = 1000; size + 8 < bytes.size(); size += bytes.size() / 7) {
-    std::ofstream(cut, std::ios::binary) << bytes.substr(0, size);
-    EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<ModelError>(HasSubstr(cut.string()))) << size;
+    config_.model_path = folder.write("cut_off.onnx", bytes.substr(0, size));
+    EXPECT_THAT([&] { Detector detector(config_); }, ThrowsMessage<ModelError>(HasSubstr(config_.model_path))) << size;
   }
-  fs::remove(cut);
 }
 
 }  // namespace

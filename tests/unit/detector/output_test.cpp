@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 
 #include "services/detector/detector_service.hpp"
 #include "services/detector/image_table.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -18,17 +17,12 @@ using ::testing::HasSubstr;
 class ImageTable : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("rtd_image_table_") + info->name());
-    std::filesystem::create_directories(folder_);
-    std::ofstream(path("tiny.onnx"), std::ios::binary)
-        << test::tiny_network_onnx({.metadata = {{"rtd.class_names", "person\nbox"}}});
+    folder_.write("tiny.onnx", test::tiny_network_onnx({.metadata = {{"rtd.class_names", "person\nbox"}}}));
     cv::Mat image = cv::Mat::zeros(64, 64, CV_8UC3);
     image(cv::Rect(40, 24, 8, 8)).setTo(cv::Scalar::all(255));
     cv::imwrite(path("white.png"), image);
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.file(name); }
 
   int run(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "rtd-detector");
@@ -41,7 +35,7 @@ class ImageTable : public ::testing::Test {
     errors_ = ::testing::internal::GetCapturedStderr();
     return code;
   }
-  std::filesystem::path folder_;
+  const rtd::test::TemporaryFolder folder_;
   std::string out_, errors_;
 };
 

@@ -5,14 +5,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <utility>
 
 #include "services/detector/core/detector_config.hpp"
 #include "tests/support/detector/mask_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -194,8 +193,9 @@ std::string refusal(const std::string& path) {
 TEST(PersonSegmenterFileTest, refuses_files_that_are_no_network_for_masks) {
   EXPECT_THAT(refusal("/nowhere/masks.onnx"), AllOf(HasSubstr("/nowhere/masks.onnx cannot be read: No such file"),
                                                     HasSubstr("setup.sh"), HasSubstr("detector.mask_model")));
-  const std::string path = ::testing::TempDir() + "person_segmenter_test.onnx";
-  const auto write = [&](const std::string& bytes) { std::ofstream(path, std::ios::binary) << bytes; };
+  const rtd::test::TemporaryFolder folder;
+  const std::string path = folder.file("masks.onnx");
+  const auto write = [&](const std::string& bytes) { folder.write("masks.onnx", bytes); };
   write("no network");
   EXPECT_THAT(refusal(path), HasSubstr("is not an ONNX model"));
   test::TinyNetwork network;
@@ -204,20 +204,17 @@ TEST(PersonSegmenterFileTest, refuses_files_that_are_no_network_for_masks) {
   network.metadata = {{"rtd.decoder", "yolov5"}};
   write(test::tiny_network_onnx(network));
   EXPECT_THAT(refusal(path), HasSubstr("is a network for 'yolov5', expected 'person_mask'"));
-  std::filesystem::remove(path);
 }
 
 TEST(PersonSegmenterFileTest, refuses_the_real_network_cut_off_anywhere) {
   const std::string real = test::mask_network();
   if (real.empty()) GTEST_SKIP() << "no network for masks: deploy/setup.sh --models";
-  std::ifstream file(real, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  const std::string path = ::testing::TempDir() + "person_segmenter_cut_off.onnx";
+  const rtd::test::TemporaryFolder folder;
+  const std::string bytes = rtd::test::read_text(real);
   for (std::size_t size = 1000; size + 8 < bytes.size(); size += bytes.size() / 9) {
-    std::ofstream(path, std::ios::binary) << bytes.substr(0, size);
+    const std::string path = folder.write("cut_off.onnx", bytes.substr(0, size));
     EXPECT_THAT(refusal(path), HasSubstr(path)) << size;
   }
-  std::filesystem::remove(path);
   EXPECT_EQ(refusal(real), "taken");
 }
 

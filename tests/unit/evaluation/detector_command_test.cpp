@@ -10,16 +10,16 @@
 #include "services/evaluation/detector/eval_detector_command.hpp"
 #include "tests/support/detector/mask_network.hpp"
 #include "tests/support/detector/tiny_network.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
 
+using rtd::test::read_text;
+using rtd::test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-using testing_support::read_text;
-using testing_support::TemporaryFolder;
 
 struct DetectorOutcome {
   int code = -1;

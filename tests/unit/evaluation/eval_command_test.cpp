@@ -9,17 +9,17 @@
 #include <sstream>
 
 #include "services/evaluation/core/report/run_summary.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
 
 using namespace ::testing;
+using rtd::test::read_text;
+using rtd::test::TemporaryFolder;
 using testing_support::moved;
-using testing_support::read_text;
 using testing_support::some_transform;
-using testing_support::TemporaryFolder;
 using testing_support::tum_text;
 using testing_support::winding_path;
 

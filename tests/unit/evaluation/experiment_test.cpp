@@ -7,15 +7,15 @@
 #include "common/service/config.hpp"
 #include "services/evaluation/commands/experiment_plan.hpp"
 #include "tests/support/evaluation_page/rendered.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/evaluation/page_data.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
 
 using namespace ::testing;
+using rtd::test::TemporaryFolder;
 using testing_support::page_data;
-using testing_support::TemporaryFolder;
 
 const std::string kSource = "tum:/data/walk";
 

@@ -14,7 +14,7 @@
 #include "common/msg/tracking.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "tests/support/rosbag1/bag_writer.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -22,12 +22,12 @@ namespace {
 using geometry::TrajectoryError;
 using rtd::test::BagWriter;
 using rtd::test::TemporaryFile;
+using rtd::test::TemporaryFolder;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::ThrowsMessage;
-using testing_support::TemporaryFolder;
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 

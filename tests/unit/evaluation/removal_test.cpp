@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "services/evaluation/core/removal/removal.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -46,12 +46,12 @@ TEST(RemovalQuality, knows_what_it_does_not_know) {
 }
 
 TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("rtd_masks_" + std::to_string(getpid()));
-  fs::create_directories(folder / "mask");
+  const rtd::test::TemporaryFolder folder;
+  fs::create_directory(folder / "mask");
   cv::imwrite((folder / "mask" / "10.500000.png").string(), square());
   cv::imwrite((folder / "mask" / "12.000000.png").string(), square());
   cv::imwrite((folder / "mask" / "cover.png").string(), square());
-  const std::string uri = "tum:" + folder.string();
+  const std::string uri = "tum:" + folder.path().string();
   EXPECT_TRUE(run_record::has_true_masks(uri + "?masks=1"));
   const std::vector<run_record::JudgedFeature> moving{{150, 150, true}};
   const auto removal =
@@ -61,7 +61,7 @@ TEST(TrueMasks, are_read_by_stamp_from_a_folder) {
   EXPECT_EQ(removal->all.removed_rightly, 2U);
   EXPECT_EQ(removal->settled.removed_rightly, 1U) << "after the first second";
   EXPECT_FALSE(judge_removal(uri, {{99, moving}})) << "none fits";
-  fs::remove_all(folder);
+  fs::remove_all(folder.path());
   EXPECT_FALSE(run_record::has_true_masks(uri));
   EXPECT_FALSE(judge_removal(uri, {{10'500'000'000, moving}}));
 }
@@ -90,14 +90,14 @@ TEST(TrueMasks, of_an_endless_scene_are_not_looked_for_at_the_end_of_time) {
 }
 
 TEST(TrueMasks, are_looked_at_evenly_spread_or_until_the_user_interrupts) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("rtd_limits_" + std::to_string(getpid()));
-  fs::create_directories(folder / "mask");
+  const rtd::test::TemporaryFolder folder;
+  fs::create_directory(folder / "mask");
   std::vector<run_record::JudgedFrame> frames;
   for (int second = 10; second < 17; ++second) {
     cv::imwrite((folder / "mask" / (std::to_string(second) + ".000000.png")).string(), square());
     frames.push_back({second * 1'000'000'000LL, {{150, 150, second % 3 == 1}}});  // removed in 10, 13 and 16
   }
-  const std::string uri = "tum:" + folder.string();
+  const std::string uri = "tum:" + folder.path().string();
   JudgeLimits limits;
   limits.most_frames = 3;
   const auto spread = judge_removal(uri, frames, limits);
@@ -107,7 +107,6 @@ TEST(TrueMasks, are_looked_at_evenly_spread_or_until_the_user_interrupts) {
   int asked = 0;
   limits = {.go_on = [&asked] { return ++asked < 3; }};
   EXPECT_EQ(judge_removal(uri, frames, limits)->frames, 2U);
-  fs::remove_all(folder);
 }
 
 }  // namespace

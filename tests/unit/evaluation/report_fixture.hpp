@@ -9,8 +9,8 @@
 
 #include "services/evaluation/core/report/report.hpp"
 #include "tests/support/evaluation_page/rendered.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
 
@@ -34,7 +34,7 @@ class Report : public testing::Test {
     return testing_support::rendered(html, folder_.file("page.html"));
   }
 
-  testing_support::TemporaryFolder folder_;
+  rtd::test::TemporaryFolder folder_;
   eval::Run record_;
 };
 

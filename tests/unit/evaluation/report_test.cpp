@@ -13,9 +13,9 @@ namespace rtd::eval {
 namespace {
 
 using namespace ::testing;
+using rtd::test::read_text;
+using rtd::test::TemporaryFolder;
 using testing_support::page_data;
-using testing_support::read_text;
-using testing_support::TemporaryFolder;
 using testing_support::tum_text;
 using testing_support::winding_path;
 

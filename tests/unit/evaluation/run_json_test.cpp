@@ -11,20 +11,20 @@
 #include "common/run_record/run_record.hpp"
 #include "services/evaluation/commands/report_command.hpp"
 #include "services/evaluation/core/report/report.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/evaluation/fabricated_run.hpp"
 #include "tests/unit/evaluation/page_data.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
 
+using rtd::test::read_text;
+using rtd::test::TemporaryFolder;
 using testing::HasSubstr;
 using testing_support::fabricated_run;
 using testing_support::fabricated_sample;
 using testing_support::moved;
-using testing_support::read_text;
 using testing_support::some_transform;
-using testing_support::TemporaryFolder;
 using testing_support::tum_text;
 using testing_support::winding_path;
 

@@ -7,15 +7,15 @@
 #include "common/service/config.hpp"
 #include "services/evaluation/commands/experiment_command.hpp"
 #include "services/evaluation/core/experiment/experiment.hpp"
-#include "tests/unit/evaluation/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::eval {
 namespace {
 
+using rtd::test::TemporaryFolder;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing_support::TemporaryFolder;
 
 const std::vector<std::string> kModes{"off", "semantic", "geometry", "epipolar", "rtd-paper", "rtd"};
 const std::vector<Technique> kTechniques{{"filter.techniques.depth_check", "no check"},

@@ -14,6 +14,7 @@
 #include "services/launcher/process/service_logs.hpp"
 #include "services/launcher/process/usage_registry.hpp"
 #include "services/launcher/run/run_command.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -106,15 +107,10 @@ namespace fs = std::filesystem;
 class TraceFileTest : public testing::Test {
  protected:
   void SetUp() override { fs::create_directories(parts_); }
-  void TearDown() override { fs::remove_all(folder_); }
   void part(const std::string& name, const std::string& text) { std::ofstream(parts_ / name) << text; }
-  std::string joined() {
-    std::stringstream text;
-    text << std::ifstream(folder_ / "trace.json").rdbuf();
-    return text.str();
-  }
+  std::string joined() { return rtd::test::read_text(folder_ / "trace.json"); }
 
-  const fs::path folder_ = fs::temp_directory_path() / ("rtd_trace_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   const fs::path parts_ = folder_ / "parts";
 };
 

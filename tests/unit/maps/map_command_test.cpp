@@ -14,6 +14,7 @@
 #include "common/occupancy/octomap_file.hpp"
 #include "services/slam/map_file.hpp"
 #include "tests/support/sample_map.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::maps {
 namespace {
@@ -23,11 +24,7 @@ using ::testing::StartsWith;
 
 class MapCommand : public ::testing::Test {
  protected:
-  MapCommand() {
-    std::filesystem::create_directories(folder_);
-    slam::save_map_file(file_, slam::take_snapshot(map_));
-  }
-  ~MapCommand() override { std::filesystem::remove_all(folder_); }
+  MapCommand() { slam::save_map_file(file_, slam::take_snapshot(map_)); }
 
   /// Exit code of `rtd map ...`; -1 when the command line is refused.
   int run(std::vector<std::string> arguments) {
@@ -44,14 +41,10 @@ class MapCommand : public ::testing::Test {
     err_.str({});
     return run_map(request, out_, err_);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string text_of(const std::string& name) const {
-    std::ifstream file(folder_ / name);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string path(const std::string& name) const { return folder_.file(name); }
+  std::string text_of(const std::string& name) const { return rtd::test::read_text(folder_ / name); }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("rtd_map_command_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   const std::string file_ = path("room.rtdmap");
   const slam::Map map_ = test_support::sample_map({.keyframes = 12});
   std::ostringstream out_, err_;

@@ -3,7 +3,6 @@
 #include "services/maps/scene_export.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdlib>
@@ -16,6 +15,7 @@
 #include "common/run_record/run_record.hpp"
 #include "common/vision/image_file.hpp"
 #include "services/slam/map_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::maps {
 namespace {
@@ -39,7 +39,6 @@ class SceneExport : public ::testing::Test {
     }
     slam::save_map_file(run_ / "map.rtdmap", slam::take_snapshot(map_));
   }
-  ~SceneExport() override { fs::remove_all(folder_); }
 
   slam::KeyframeId add_keyframe(const camera::SourceFrame& source, const camera::SourceInfo& info,
                                 slam::KeyframeId parent) {
@@ -86,10 +85,10 @@ class SceneExport : public ::testing::Test {
     err_.str({});
     return export_scene(request, out_, err_);
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_.file(name); }
 
   static constexpr const char* kSource = "synthetic:office?frames=6&people=0&boxes=0&width=320&height=240";
-  const fs::path folder_ = fs::path(::testing::TempDir()) / ("rtd_scene_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   const fs::path run_ = folder_ / "run";
   slam::Map map_;
   std::vector<geometry::StampedPose> poses_;

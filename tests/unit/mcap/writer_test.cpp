@@ -11,6 +11,7 @@
 #include <cstdlib>
 
 #include "common/mcap/writer.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/mcap/sample_file.hpp"
 
 namespace rtd::mcap {
@@ -156,11 +157,8 @@ TEST(Writer, self_contained_chunks_survive_the_loss_of_the_first) {
 
 class FileSinkTest : public ::testing::Test {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("mcap_sink" + std::to_string(getpid()));
-  std::filesystem::path path_ = folder_ / "a.mcap";
+  const rtd::test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "a.mcap";
 };
 
 std::string reason_of(const std::function<void()>& call) {

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <vector>
 
 #include "services/recorder/core/message_queue.hpp"
 #include "services/recorder/core/output_files.hpp"
 #include "services/recorder/core/topic_registry.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::recorder {
 namespace {
@@ -57,15 +57,10 @@ namespace fs = std::filesystem;
 
 class OutputFolder : public ::testing::Test {
  protected:
-  OutputFolder() : folder_(fs::temp_directory_path() / "rtd_output_files_test") {
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~OutputFolder() override { fs::remove_all(folder_); }
-  void put(const std::string& name, const std::string& text = "x") const { std::ofstream(folder_ / name) << text; }
-  std::string in(const std::string& name) const { return folder_ / name; }
+  void put(const std::string& name, const std::string& text = "x") const { folder_.write(name, text); }
+  std::string in(const std::string& name) const { return folder_.file(name); }
 
-  const fs::path folder_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST(OutputFiles, are_one_file_numbered_files_or_a_folder) {

@@ -117,7 +117,7 @@ TEST_F(CopyRecordingTest, a_bag_is_turned_into_cdr_and_what_cannot_be_is_named) 
   bag.message(bad, 1'000'000'001, bytes);
   bytes.pop_back();
   bag.message(good, 1'000'000'002, bytes);
-  const CopiedRecording result = copy(folder_.file("a.bag", bag.closed()));
+  const CopiedRecording result = copy(folder_.write("a.bag", bag.closed()));
   EXPECT_EQ(result.messages, 1U);
   EXPECT_EQ(result.from_ros1, 1U);
   ASSERT_TRUE(result.left_out.contains("/bad"));
@@ -128,10 +128,10 @@ TEST_F(CopyRecordingTest, a_bag_is_turned_into_cdr_and_what_cannot_be_is_named) 
 }
 
 TEST_F(CopyRecordingTest, nothing_is_overwritten) {
-  folder_.file("new.mcap", "mine");
+  folder_.write("new.mcap", "mine");
   const std::string source = folder_.mcap("a.mcap", samples(0, 2));
   EXPECT_THROW(copy(source), io::IoError);
-  EXPECT_EQ(folder_.content("new.mcap"), "mine");
+  EXPECT_EQ(rtd::test::read_text(folder_ / "new.mcap"), "mine");
 }
 
 }  // namespace

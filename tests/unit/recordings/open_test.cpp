@@ -70,7 +70,7 @@ TEST_F(OpenTest, a_ros1_bag_keeps_its_encoding) {
   const std::uint32_t imu = bag.connection("/imu", "sensor_msgs/Imu");
   const std::vector<std::uint8_t> bytes = {'x', 'y'};
   bag.message(imu, 5'000'000, bytes);
-  const std::string path = folder_.file("a.bag", bag.closed());
+  const std::string path = folder_.write("a.bag", bag.closed());
   holds(path, {{"/imu", 5'000'000, "xy"}});
   const Opened opened = open(path);
   const mcap::IndexedReader reader(*opened.source);
@@ -80,8 +80,9 @@ TEST_F(OpenTest, a_ros1_bag_keeps_its_encoding) {
 TEST_F(OpenTest, split_folders_of_either_storage_are_one_recording) {
   folder_.db3("bag/bag_0.db3", samples(0, 4));
   folder_.db3("bag/bag_1.db3", samples(4, 4));
-  folder_.file("bag/metadata.yaml",
-               "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.db3, bag_1.db3]\n  compression_mode: ''\n");
+  folder_.write(
+      "bag/metadata.yaml",
+      "rosbag2_bagfile_information:\n  relative_file_paths: [bag_0.db3, bag_1.db3]\n  compression_mode: ''\n");
   holds(folder_ / "bag", samples(0, 8));
   EXPECT_THAT(open(folder_ / "bag").imported, HasSubstr("2 files"));
   folder_.mcap("split/s_9.mcap", samples(0, 4));
@@ -92,13 +93,13 @@ TEST_F(OpenTest, split_folders_of_either_storage_are_one_recording) {
 
 TEST_F(OpenTest, files_packed_with_zstd_are_unpacked) {
   folder_.mcap("a.mcap", samples(0, 6));
-  holds(folder_.file("a.mcap.zst", packed(folder_.content("a.mcap"))), samples(0, 6));
+  holds(folder_.write("a.mcap.zst", packed(rtd::test::read_text(folder_ / "a.mcap"))), samples(0, 6));
   folder_.db3("a.db3", samples(0, 6));
-  const std::string part = folder_.file("bag/a.db3.zstd", packed(folder_.content("a.db3")));
+  const std::string part = folder_.write("bag/a.db3.zstd", packed(rtd::test::read_text(folder_ / "a.db3")));
   holds(part, samples(0, 6));
-  folder_.file("bag/metadata.yaml",
-               "rosbag2_bagfile_information: {relative_file_paths: [a.db3.zstd], compression_format: zstd, "
-               "compression_mode: FILE}");
+  folder_.write("bag/metadata.yaml",
+                "rosbag2_bagfile_information: {relative_file_paths: [a.db3.zstd], compression_format: zstd, "
+                "compression_mode: FILE}");
   holds(folder_ / "bag", samples(0, 6));
 }
 
@@ -112,7 +113,7 @@ TEST_F(OpenTest, messages_packed_one_by_one_are_unpacked) {
   const auto write_metadata = [&](const std::string& name) {
     std::string text = metadata;
     text.replace(text.find('%'), 1, name);
-    folder_.file("bag/metadata.yaml", text);
+    folder_.write("bag/metadata.yaml", text);
   };
   write_metadata("a.db3");
   holds(folder_ / "bag", samples(0, 6));
@@ -143,8 +144,8 @@ TEST_F(OpenTest, what_is_missing_or_damaged_is_named_and_the_rest_is_there) {
     for (int i = 0; i < 4000; ++i) message.data += static_cast<char>(random());
   }
   folder_.mcap("a.mcap", many);
-  const std::string whole = packed(folder_.content("a.mcap"));
-  const Opened cut = open(folder_.file("cut.mcap.zst", whole.substr(0, whole.size() - 20)));
+  const std::string whole = packed(rtd::test::read_text(folder_ / "a.mcap"));
+  const Opened cut = open(folder_.write("cut.mcap.zst", whole.substr(0, whole.size() - 20)));
   EXPECT_THAT(cut.damages, ElementsAre(HasSubstr("cut.mcap.zst")));
   EXPECT_GT(messages_of(*cut.source).size(), 100U) << "what was unpacked before is there";
 }
@@ -153,7 +154,8 @@ TEST_F(OpenTest, a_folder_gives_only_what_lies_in_it) {
   folder_.mcap("other.mcap", samples(0, 6));
   folder_.mcap("bag/bag_0.mcap", samples(0, 4));
   const auto write_metadata = [&](const std::string& name) {
-    folder_.file("bag/metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [bag_0.mcap, " + name + "]}");
+    folder_.write("bag/metadata.yaml",
+                  "rosbag2_bagfile_information: {relative_file_paths: [bag_0.mcap, " + name + "]}");
   };
   for (const std::string& name : {std::string("../other.mcap"), folder_ / "other.mcap", std::string("/etc/passwd")}) {
     write_metadata(name);
@@ -180,17 +182,17 @@ TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
   folder_.mcap("two/a_0.mcap", samples(0, 2));
   folder_.mcap("two/b_0.mcap", samples(0, 2));
   refuses(folder_ / "two", "2 recordings of different names");
-  refuses(folder_.file("a.txt", "hello"), "not an MCAP file");
-  refuses(folder_.file("a.zst", packed("hello")), "not an MCAP file");
-  refuses(folder_.file("a.db3", "SQLite format 3 and nothing"), "a.db3");
-  folder_.file("m/metadata.yaml", "rosbag2_bagfile_information: [");
+  refuses(folder_.write("a.txt", "hello"), "not an MCAP file");
+  refuses(folder_.write("a.zst", packed("hello")), "not an MCAP file");
+  refuses(folder_.write("a.db3", "SQLite format 3 and nothing"), "a.db3");
+  folder_.write("m/metadata.yaml", "rosbag2_bagfile_information: [");
   refuses(folder_ / "m", "metadata.yaml cannot be read");
-  folder_.file("m/metadata.yaml", "other: 1");
+  folder_.write("m/metadata.yaml", "other: 1");
   refuses(folder_ / "m", "describes no recording");
-  folder_.file("m/metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [x.db3]}");
+  folder_.write("m/metadata.yaml", "rosbag2_bagfile_information: {relative_file_paths: [x.db3]}");
   refuses(folder_ / "m", "none of the files");
-  folder_.file("m/metadata.yaml",
-               "rosbag2_bagfile_information: {relative_file_paths: [x.db3], compression_format: lz4}");
+  folder_.write("m/metadata.yaml",
+                "rosbag2_bagfile_information: {relative_file_paths: [x.db3], compression_format: lz4}");
   refuses(folder_ / "m", "'lz4': only zstd is known");
   fs::remove(folder_ / "m/metadata.yaml");
   ASSERT_EQ(mkfifo((folder_ / "m/metadata.yaml").c_str(), 0600), 0);
@@ -202,12 +204,12 @@ TEST_F(OpenTest, what_is_no_recording_is_refused_with_the_reason) {
 }
 
 TEST_F(OpenTest, nothing_stays_behind_in_the_folder_for_temporary_files) {
-  const fs::path temporary = folder_.path() + "/tmp";
+  const fs::path temporary = folder_ / "tmp";
   fs::create_directory(temporary);
   ASSERT_EQ(setenv("TMPDIR", temporary.c_str(), 1), 0);
   folder_.db3("a.db3", samples(0, 6));
   {
-    const Opened opened = open(folder_.file("a.db3.zst", packed(folder_.content("a.db3"))));
+    const Opened opened = open(folder_.write("a.db3.zst", packed(rtd::test::read_text(folder_ / "a.db3"))));
     EXPECT_TRUE(fs::is_empty(temporary)) << "already while it is read";
     EXPECT_EQ(messages_of(*opened.source).size(), 6U);
   }

@@ -8,13 +8,13 @@
 #include <zstd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "common/mcap/indexed_reader.hpp"
 #include "common/mcap/writer.hpp"
 #include "common/recordings/open.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::recordings::test {
 
@@ -43,28 +43,9 @@ inline std::string packed(const std::string& bytes) {
   return out;
 }
 
-/// A folder of its own that goes with the test.
-class Folder {
+class Folder : public rtd::test::TemporaryFolder {
  public:
-  Folder() : path_(fs::temp_directory_path() / ("rtd_recordings_" + std::to_string(getpid()))) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string path() const { return path_.string(); }
-  std::string file(const std::string& name, const std::string& bytes) const {
-    fs::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << bytes;
-    return *this / name;
-  }
-  std::string content(const std::string& name) const {
-    std::ifstream file(path_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
+  std::string operator/(const std::string& name) const { return file(name); }
   /// A rosbag2 database with these messages, as versions from Iron on have it.
   std::string db3(const std::string& name, const std::vector<Sample>& messages) const {
     const std::string path = *this / name;
@@ -107,7 +88,7 @@ class Folder {
       writer.write(mcap::Message{id->second, 0, time, time, io::bytes_of(message.data)});
     }
     writer.close();
-    return file(name, {reinterpret_cast<const char*>(sink.bytes().data()), sink.bytes().size()});
+    return write(name, {reinterpret_cast<const char*>(sink.bytes().data()), sink.bytes().size()});
   }
   /// As rosbag2 writes it.
   void metadata(const std::vector<std::string>& files, const std::string& format = "",
@@ -115,11 +96,8 @@ class Folder {
     std::string text = "rosbag2_bagfile_information:\n  version: 5\n  compression_format: \"" + format +
                        "\"\n  compression_mode: \"" + mode + "\"\n  relative_file_paths:\n";
     for (const std::string& name : files) text += "    - " + name + '\n';
-    file("metadata.yaml", text);
+    write("metadata.yaml", text);
   }
-
- private:
-  fs::path path_;
 };
 
 /// The messages of a recording, by time.

@@ -12,6 +12,7 @@
 #include "common/camera/source_factory.hpp"
 #include "common/recordings/reader.hpp"
 #include "common/rosbag2/db3_reader.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/mcap_file.hpp"
 #include "tests/unit/camera/played_frames.hpp"
@@ -46,18 +47,8 @@ constexpr char kMessages[] =
     "INSERT INTO messages(topic_id,timestamp,data) VALUES(1,3000000000,zeroblob(20000)),(2,1000000000,x'00010203'),"
     "(1,2000000000,x'07');";
 
-std::string content_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 class Db3ReaderTest : public ::testing::Test {
  protected:
-  Db3ReaderTest() : folder_(fs::temp_directory_path() / ("rtd_db3_" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~Db3ReaderTest() override { fs::remove_all(folder_); }
-
   static sqlite3* make(const fs::path& path, const std::string& sql) {
     sqlite3* database = nullptr;
     EXPECT_EQ(sqlite3_open(path.c_str(), &database), SQLITE_OK);
@@ -69,13 +60,9 @@ class Db3ReaderTest : public ::testing::Test {
     sqlite3_close(make(path, sql));
     return path;
   }
-  fs::path written(const std::string& content) const {
-    fs::path path = folder_ / "raw.db3";
-    std::ofstream(path, std::ios::binary) << content;
-    return path;
-  }
+  fs::path written(const std::string& content) const { return folder_.write("raw.db3", content); }
 
-  const fs::path folder_;
+  const rtd::test::TemporaryFolder folder_;
 };
 
 void expect_three_messages(Db3Reader reader) {
@@ -104,11 +91,11 @@ TEST_F(Db3ReaderTest, reads_a_file_that_was_never_closed_and_leaves_it_as_it_is)
   fs::copy_file(open, left);
   fs::copy_file(open.string() + "-wal", left.string() + "-wal");
   sqlite3_close(writer);
-  const std::string file = content_of(left), log = content_of(left.string() + "-wal");
+  const std::string file = rtd::test::read_text(left), log = rtd::test::read_text(left.string() + "-wal");
   ASSERT_FALSE(log.empty());
   expect_three_messages(Db3Reader(left));
-  EXPECT_EQ(content_of(left), file);
-  EXPECT_EQ(content_of(left.string() + "-wal"), log);
+  EXPECT_EQ(rtd::test::read_text(left), file);
+  EXPECT_EQ(rtd::test::read_text(left.string() + "-wal"), log);
 }
 
 TEST_F(Db3ReaderTest, refuses_files_that_are_no_recording) {
@@ -134,7 +121,7 @@ TEST_F(Db3ReaderTest, refuses_a_view_in_place_of_the_messages) {
 TEST_F(Db3ReaderTest, cut_file_gives_what_is_left_and_reports_the_loss) {
   std::string many = kHumble;
   for (int i = 0; i < 200; ++i) many += "INSERT INTO messages VALUES(NULL,1," + std::to_string(i) + ",zeroblob(1000));";
-  const std::string whole = content_of(closed(many));
+  const std::string whole = rtd::test::read_text(closed(many));
   Db3Reader reader(written(whole.substr(0, whole.size() / 2)));
   EXPECT_THAT(reader.damages(), SizeIs(1));
   EXPECT_GT(reader.messages({"/a"}).size(), 20U);
@@ -142,7 +129,7 @@ TEST_F(Db3ReaderTest, cut_file_gives_what_is_left_and_reports_the_loss) {
 }
 
 TEST_F(Db3ReaderTest, survives_flipped_bytes) {
-  const std::string sound = content_of(closed(std::string(kJazzy) + kMessages));
+  const std::string sound = rtd::test::read_text(closed(std::string(kJazzy) + kMessages));
   std::mt19937 random(7);
   int refused = 0;
   for (int trial = 0; trial < 1000; ++trial) {
@@ -244,14 +231,12 @@ class Db3SourceTest : public ::testing::Test {
   Db3SourceTest() {
     fill(file_);
     mcap_uri_ = file_.uri();
-    std::filesystem::remove(db3_);
     const auto recording = recordings::open_reader(mcap_uri_.substr(5));
     copied_ = copy_to_db3(*recording, db3_);
   }
-  ~Db3SourceTest() override { std::filesystem::remove(db3_); }
 
-  const std::filesystem::path db3_ =
-      std::filesystem::temp_directory_path() / ("rtd_db3_source_" + std::to_string(getpid()) + ".db3");
+  const rtd::test::TemporaryFolder folder_;
+  const std::filesystem::path db3_ = folder_ / "copied.db3";
   test::McapFile file_;
   std::string mcap_uri_;
   int copied_ = 0;

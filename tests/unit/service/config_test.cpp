@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 
 #include "common/service/config.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::service {
 namespace {
@@ -39,11 +39,7 @@ struct Sample {
 class ConfigTest : public ::testing::Test {
  protected:
   ConfigTest() { binder_.section("filter", sample_); }
-  std::string write(const std::string& text) {
-    const std::string path = ::testing::TempDir() + "/rtd_config_test.yaml";
-    std::ofstream(path) << text;
-    return path;
-  }
+  std::string write(const std::string& text) const { return folder_.write("test.yaml", text); }
   std::string error_of(const std::string& text) {
     try {
       binder_.load_file(write(text), {"slam"});
@@ -52,6 +48,7 @@ class ConfigTest : public ::testing::Test {
     }
     return "no error";
   }
+  const rtd::test::TemporaryFolder folder_;
   Sample sample_;
   ConfigBinder binder_;
 };

@@ -5,7 +5,6 @@
 
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "common/geometry/pose_list.hpp"
@@ -17,6 +16,7 @@
 #include "services/slam/config.hpp"
 #include "services/slam/map_keeper.hpp"
 #include "services/slam/slam_messages.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -203,18 +203,16 @@ TEST(Config, refuses_unknown_keys_and_values_out_of_range) {
 TEST(SlamConfig, refuses_a_vocabulary_that_is_missing_or_damaged) {
   ServiceConfig config;
   EXPECT_EQ(core_config(config).place.vocabulary, nullptr);  // the core takes the built-in one
-  config.vocabulary_file = testing::TempDir() + "rtd_no_such_file.vocabulary";
+  const rtd::test::TemporaryFolder folder;
+  config.vocabulary_file = folder.file("none.vocabulary");
   EXPECT_THAT([&] { core_config(config); }, ThrowsMessage<service::ConfigError>(testing::AllOf(
                                                 HasSubstr("slam.place.vocabulary: "), HasSubstr("cannot be read"))));
-  config.vocabulary_file = testing::TempDir() + "rtd_damaged.vocabulary";
-  std::ofstream(config.vocabulary_file) << "RTDVOC01 and then something else";
+  config.vocabulary_file = folder.write("damaged.vocabulary", "RTDVOC01 and then something else");
   EXPECT_THAT([&] { core_config(config); }, ThrowsMessage<service::ConfigError>(HasSubstr("rtd-train-vocabulary")));
 }
 
 TEST(RunFiles, a_trajectory_whose_stamps_go_back_has_a_file_for_each_segment) {
-  const std::filesystem::path folder =
-      std::filesystem::temp_directory_path() / ("rtd_run_files_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
+  const rtd::test::TemporaryFolder folder;
   std::vector<StampedPose> poses;
   for (const std::int64_t second : {1, 2, 3, 1, 2}) poses.push_back({second * 1'000'000'000, {}});
   for (StampedPose& pose : poses) pose.T_world_body.setIdentity();
@@ -224,7 +222,6 @@ TEST(RunFiles, a_trajectory_whose_stamps_go_back_has_a_file_for_each_segment) {
   EXPECT_FALSE(std::filesystem::exists(folder / "trajectory_segment_3.txt"));
   write_trajectory({}, folder / "none");
   EXPECT_TRUE(std::filesystem::exists(folder / "none.txt")) << "empty, but there";
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <fstream>
-
 #include "services/viewer/core/outbox.hpp"
 #include "services/viewer/web/site.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::viewer {
 namespace {
@@ -63,25 +62,21 @@ namespace fs = std::filesystem;
 class SiteTest : public testing::Test {
  protected:
   SiteTest() {
-    fs::create_directories(three_ / "examples" / "jsm");
     fs::create_directories(three_ / "build");
-    write("three/three.module.js", "module");
-    write("three/examples/jsm/Controls.js", "controls");
-    write("three/readme.txt", "text");
-    write("secret.js", "secret");
+    folder_.write("three/three.module.js", "module");
+    folder_.write("three/examples/jsm/Controls.js", "controls");
+    folder_.write("three/readme.txt", "text");
+    folder_.write("secret.js", "secret");
     fs::create_symlink("../three.module.js", three_ / "build" / "three.module.js");
     fs::create_symlink("../secret.js", three_ / "out.js");
     fs::create_directory_symlink("..", three_ / "up");
   }
-  ~SiteTest() override { fs::remove_all(folder_); }
-
-  void write(const std::string& name, const std::string& text) { std::ofstream(folder_ / name) << text; }
   std::string content(const std::string& path) const {
     const auto file = Site(three_).file(path);
     return file ? file->content : "";
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("rtd_site_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   const fs::path three_ = folder_ / "three";
 };
 

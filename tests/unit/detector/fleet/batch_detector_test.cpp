@@ -4,12 +4,11 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
 #include <vector>
 
 #include "services/detector/core/engine.hpp"
 #include "tests/support/detector/tiny_network.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::detector {
 namespace {
@@ -18,12 +17,9 @@ using namespace ::testing;
 
 class BatchDetectorTest : public ::testing::Test {
  protected:
-  ~BatchDetectorTest() override { std::filesystem::remove(model_); }
-
   DetectorConfig config(const test::TinyNetwork& network) const {
-    std::ofstream(model_, std::ios::binary) << test::tiny_network_onnx(network);
     DetectorConfig config;
-    config.model_path = model_;
+    config.model_path = folder_.write("tiny.onnx", test::tiny_network_onnx(network));
     config.class_names = {"person", "box"};
     return config;
   }
@@ -37,10 +33,7 @@ class BatchDetectorTest : public ::testing::Test {
     EXPECT_THAT(found[1], SizeIs(1));
   }
 
-  const std::string model_ =
-      (std::filesystem::temp_directory_path() /
-       (std::string("rtd_batch_detector_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".onnx"))
-          .string();
+  const rtd::test::TemporaryFolder folder_;
 };
 
 TEST_F(BatchDetectorTest, computes_images_of_different_sizes_at_once) {

@@ -77,7 +77,7 @@ TEST(FindSequences, names_cause_and_fix_of_each_that_is_left_out_and_continues) 
   fs::remove(data.path() / "rgbd_bonn_balloon/rgb/2.png");
   fs::remove(data.path() / "rgbd_bonn_crowd/groundtruth.txt");
   data.write("rgbd_bonn_crowd2/depth.txt", "# nothing\n");
-  data.write_below("rgbd_bonn_kidnapping/readme", "");
+  data.write("rgbd_bonn_kidnapping/readme", "");
   data.add_tum("my_room");
   data.add_tum("rgbd_dataset_freiburg1_xyz");
   data.write("rgbd_bonn_static.zip", "");

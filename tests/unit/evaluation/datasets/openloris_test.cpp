@@ -51,7 +51,7 @@ TEST_F(PrepareOpenloris, makes_a_folder_whose_images_are_there_and_can_be_made_a
   prepare();
   EXPECT_TRUE(fs::exists(into_ / "color/1.png"));
   EXPECT_TRUE(fs::exists(into_ / "aligned_depth/2.png"));
-  EXPECT_THAT(testing_support::read_text(into_ / "rgb.txt"), HasSubstr("1.0 color/1.png"));
+  EXPECT_THAT(rtd::test::read_text(into_ / "rgb.txt"), HasSubstr("1.0 color/1.png"));
 }
 
 TEST_F(PrepareOpenloris, frames_that_are_all_linked_to_each_other_take_no_longer) {

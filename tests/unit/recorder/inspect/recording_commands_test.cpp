@@ -4,8 +4,6 @@
 #include <unistd.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <sstream>
 
@@ -15,6 +13,7 @@
 #include "common/ros_codec/wire.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"
 #include "services/recorder/inspect/payload_diff.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/recorder/inspect/sample_recording.hpp"
 
 namespace rtd::recordings {
@@ -26,25 +25,14 @@ using testing::IsEmpty;
 
 class RecordingCommandsTest : public testing::Test {
  protected:
-  RecordingCommandsTest() { std::filesystem::create_directories(folder_); }
-  ~RecordingCommandsTest() override {
-    std::error_code ignored;
-    std::filesystem::remove_all(folder_, ignored);
-  }
   std::string file(const std::string& name, const io::Bytes& bytes) const {
-    const std::string path = (folder_ / name).string();
-    std::ofstream(path, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    return path;
+    return file(name, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
-  std::string file(const std::string& name, const std::string& text) const {
-    const io::ByteView view = io::bytes_of(text);
-    return file(name, io::Bytes(view.begin(), view.end()));
-  }
+  std::string file(const std::string& name, const std::string& text) const { return folder_.write(name, text); }
   int info(const std::string& path, bool json = false) { return run_info({path, json}, out_, err_); }
   int diff(const std::string& a, const std::string& b, bool json = false) { return run_diff({a, b, json}, out_, err_); }
 
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / ("rtd_rec_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   std::ostringstream out_, err_;
 };
 
@@ -79,14 +67,14 @@ TEST_F(RecordingCommandsTest, what_is_no_recording_is_named_with_a_way_out) {
 }
 
 TEST_F(RecordingCommandsTest, a_folder_stands_for_the_only_recording_in_it) {
-  EXPECT_EQ(info(folder_.string()), 2);
+  EXPECT_EQ(info(folder_.path().string()), 2);
   EXPECT_THAT(err_.str(),
               HasSubstr("holds no recording (metadata.yaml, .mcap, .db3): name a recording or a folder with one\n"));
   file("a_0.mcap", recording_of(regular_messages("/pose", 5)));
-  EXPECT_EQ(info(folder_.string()), 0);
-  EXPECT_EQ(diff(folder_.string(), folder_.string()), 0);
+  EXPECT_EQ(info(folder_.path().string()), 0);
+  EXPECT_EQ(diff(folder_.path().string(), folder_.path().string()), 0);
   file("b_0.mcap", recording_of(regular_messages("/pose", 5)));
-  EXPECT_EQ(info(folder_.string()), 2);
+  EXPECT_EQ(info(folder_.path().string()), 2);
   EXPECT_THAT(err_.str(), testing::AllOf(HasSubstr("name one of them"), testing::Not(HasSubstr("Is a directory"))));
 }
 

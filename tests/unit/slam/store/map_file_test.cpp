@@ -14,6 +14,7 @@
 #include <fstream>
 
 #include "tests/support/sample_map.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rtd::slam {
 namespace {
@@ -26,16 +27,12 @@ using ::testing::ThrowsMessage;
 
 class MapFileOnDisk : public ::testing::Test {
  protected:
-  MapFileOnDisk() { std::filesystem::create_directories(folder_); }
-  ~MapFileOnDisk() override { std::filesystem::remove_all(folder_); }
-
   std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+    return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_.path()), {}));
   }
   static std::size_t keyframes_in(const std::filesystem::path& path) { return load_map_file(path).keyframes.size(); }
 
-  const std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ("rtd_map_file_" + std::to_string(getpid()));
+  const rtd::test::TemporaryFolder folder_;
   const std::filesystem::path path_ = folder_ / "room.rtdmap";
 };
 

@@ -2,19 +2,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
-namespace rtd::eval::testing_support {
+namespace rtd::test {
 
-/// A folder of its own that goes away with the test.
+/// An empty folder of its own for a test, removed at the end with what is in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rtd_eval_XXXXXX").string();
+    std::string name = (std::filesystem::temp_directory_path() / "rtd_XXXXXX").string();
     path_ = mkdtemp(name.data());
   }
   ~TemporaryFolder() {
@@ -24,10 +24,14 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
   const std::filesystem::path& path() const { return path_; }
+  operator const std::filesystem::path&() const { return path_; }
+  std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
+  /// Makes the folders above it too; the path of the file.
   std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name) << content;
+    std::filesystem::create_directories((path_ / name).parent_path());
+    std::ofstream(path_ / name, std::ios::binary) << content;
     return file(name);
   }
 
@@ -40,4 +44,4 @@ inline std::string read_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(input), {}};
 }
 
-}  // namespace rtd::eval::testing_support
+}  // namespace rtd::test
