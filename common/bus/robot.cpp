@@ -19,6 +19,9 @@ constexpr std::array<std::string_view, 5> kNodes = {"camera/", "detector/", "fil
 /// The floor plan, where a map server of ROS 2 has its own.
 constexpr std::string_view kPlan = "map";
 
+/// What the atlas says of all robots.
+constexpr std::string_view kAllRobots = "atlas";
+
 /// Those that only commands have.
 constexpr std::array<std::string_view, 2> kCommandNodes = {"recorder/", "replay/"};
 
@@ -36,7 +39,7 @@ std::string_view kind_of(std::string_view topic) {
 
 /// Whether a robot has its own topic of that kind and name.
 bool is_own(std::string_view kind, std::string_view name) {
-  if (kind == kOwn) return true;
+  if (kind == kOwn) return name != kAllRobots;
   return begins_with_one(name, kNodes) || (kind == kRos ? name == kPlan : begins_with_one(name, kCommandNodes));
 }
 

@@ -24,7 +24,7 @@ bool is_robot_name(std::string_view name);
 void require_robot_name(const std::string& name);
 
 /// "rt/slam/odometry" of robot "anna": "rt/anna/slam/odometry". What all robots share keeps its name: "rt/tf",
-/// "rt/diagnostics" and the topics of ROS 2 itself.
+/// "rt/diagnostics", those of the atlas and the topics of ROS 2 itself.
 std::string topic_of_robot(std::string_view topic, std::string_view robot);
 
 /// A name on the wire, divided.

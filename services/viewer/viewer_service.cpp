@@ -251,8 +251,7 @@ std::vector<WatchedService> ViewerService::watched_services() const {
 /// Where the robots of a building are; in a keystore without an atlas it may not be read.
 void ViewerService::read_atlas() {
   try {
-    shared_ = runtime_.bus.of_robot("");
-    atlas_ = shared_->reader(bus::topics::kAtlas, [this](std::shared_ptr<const msg::AtlasState> state) {
+    atlas_ = runtime_.bus.reader(bus::topics::kAtlas, [this](std::shared_ptr<const msg::AtlasState> state) {
       std::string text = page::atlas(*state);
       const std::size_t bytes = text.size();
       dispatcher_->deliver([this, text = std::move(text)] { page_.set_atlas(text); }, bytes);

@@ -104,7 +104,6 @@ class ViewerService {
   std::optional<TopicFeed> topics_;
   std::optional<CommandQueue> commands_;  ///< none: read-only
   std::map<std::string, std::unique_ptr<RobotFeed>> robots_;
-  std::shared_ptr<bus::Bus> shared_;  ///< without a robot's name
   bus::Reader<msg::AtlasState> atlas_;
   bool robots_changed_ = true;
   std::int64_t refreshed_ns_ = 0;

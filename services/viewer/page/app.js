@@ -54,10 +54,10 @@ class App {
     this.events = new EventsPanel((event) => this.goTo(event));
     this.controls = new Controls(this.calls);
     this.replay = new ReplayBar(this.calls);
-    this.layers = new LayersPanel(this.settings, () => this.settingsChanged());
-    this.share = new ShareDialog(this);
     this.asked = parseHash(location.hash);   // by the link that opened the page
     if (this.asked.layers) for (const name of Object.keys(this.settings.layers)) this.settings.layers[name] = this.asked.layers.includes(name);
+    this.layers = new LayersPanel(this.settings, () => this.settingsChanged());
+    this.share = new ShareDialog(this);
     this.chosen = this.asked.robot;
     this.frame = new PanelFrame(this.settings, () => this.settingsChanged());
     this.connection = new Connection(liveAddress(location), {

@@ -35,7 +35,7 @@ TEST(Robot, with_a_name_topics_and_frames_are_below_it) {
 
 TEST(Robot, what_all_robots_share_keeps_its_name) {
   for (const char* topic :
-       {"rt/tf", "rt/tf_static", "rt/diagnostics", "rt/rosout", "ros_discovery_info", "rq/a/bRequest"})
+       {"rt/tf", "rt/tf_static", "rt/diagnostics", "rt/rosout", "ros_discovery_info", "rq/a/bRequest", "rtd/atlas"})
     EXPECT_EQ(topic_of_robot(topic, "anna"), topic);
 }
 

@@ -117,6 +117,18 @@ TEST_F(KeystoreCommandTest, makes_an_enclave_for_each_role_with_the_topics_of_th
   }
 }
 
+TEST_F(KeystoreCommandTest, the_viewer_of_a_robot_may_see_where_all_robots_are_and_no_more_of_them) {
+  request_.robots = {"anna", "bert"};
+  ASSERT_EQ(run(Action::kCreate), 0) << err_.str();
+  const auto viewer = security::open_enclave(request_.folder, "/rtd/anna/viewer", 0, kNow_s);
+  const auto may_read = [&](const char* topic) {
+    return security::matches_any(viewer.permissions.topics.subscribe, topic);
+  };
+  EXPECT_TRUE(may_read("rtd/atlas"));
+  EXPECT_TRUE(may_read("rtd/anna/map"));
+  EXPECT_FALSE(may_read("rtd/bert/map"));
+}
+
 TEST_F(KeystoreCommandTest, a_second_one_is_refused) {
   ASSERT_EQ(run(Action::kCreate), 0);
   EXPECT_EQ(run(Action::kCreate), 2);
