@@ -44,17 +44,6 @@ namespace {
 constexpr std::size_t kEveryFrameQueue = 8;  // deeper than the camera's window of frames in flight
 constexpr double kNsPerMs = 1e6, kNsPerS = 1e9;
 
-/// `load()`, with what is wrong about a network as an error of the configuration.
-auto load_network(auto load) {
-  try {
-    return load();
-  } catch (const ModelError& error) {
-    throw service::ConfigError(error.what());
-  } catch (const EngineError& error) {
-    throw service::ConfigError(std::string("detector.engine: ") + error.what());
-  }
-}
-
 /// Of its own for each worker: a network holds the memory of its layers. Only pace asap has several images to work on.
 std::vector<std::unique_ptr<EngineGuard>> load_detectors(const ServiceConfig& config, service::Pace pace) {
   std::vector<std::unique_ptr<EngineGuard>> detectors;

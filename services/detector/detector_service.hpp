@@ -95,6 +95,17 @@ struct ServiceConfig {
   }
 };
 
+/// `load()`, with what is wrong about a network as an error of the configuration.
+auto load_network(const auto& load) {
+  try {
+    return load();
+  } catch (const ModelError& error) {
+    throw service::ConfigError(error.what());
+  } catch (const EngineError& error) {
+    throw service::ConfigError(std::string("detector.engine: ") + error.what());
+  }
+}
+
 /// The part of the configuration for the network, with the file found. Throws ConfigError without weights.
 DetectorConfig core_config(const ServiceConfig& config);
 /// The part for person masks; without a path there are none. Throws ConfigError when they are asked for and their

@@ -10,10 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "services/detector/core/decoders/yolov5.hpp"
-#include "services/detector/core/network_input.hpp"
-#include "services/detector/core/onnx_file.hpp"
-
 namespace rtd::detector {
 namespace {
 
@@ -62,6 +58,7 @@ const std::vector<std::string>& coco_class_names() {
 
 Network::Network(DetectorConfig config) : config_(std::move(config)) {
   const QuietOpenCv quiet;
+  cv::setNumThreads(config_.threads);
   try {
     load();
     infer(cv::Mat(std::vector<int>{1, 3, input_.height_px, input_.width_px}, CV_32F, cv::Scalar(0)));
@@ -112,7 +109,7 @@ void Network::choose_decoder() {
     known = known || wanted_decoder_ == family.name;
     if (!wanted_decoder_.empty() && wanted_decoder_ != family.name) continue;
     decoder_ = family.make(facts, *outputs_);
-    family_ = family.title;
+    family_ = &family;
     if (decoder_) return;
   }
   if (!known) {
@@ -131,7 +128,7 @@ const std::vector<RawOutput>& Network::infer(const cv::Mat& blob) {
 }
 
 std::vector<Candidate> Network::candidates(int image) const {
-  return decoder_->decode(*outputs_, image, config_.decode);
+  return decoder_(*outputs_, image, config_.decode);
 }
 
 namespace {
@@ -156,22 +153,13 @@ cv::Mat to_bgr(const cv::Mat& image) {
 
 }  // namespace
 
-Detector::Detector(DetectorConfig config) {
-  cv::setNumThreads(config.threads);
-  network_ = std::make_unique<Network>(std::move(config));
-}
-
 std::vector<vision::Detection> Detector::detect(const cv::Mat& color_bgr) {
   if (color_bgr.empty()) return {};
-  const cv::Mat image = to_bgr(color_bgr);
-  const Letterbox letterbox = fit_letterbox(image.size(), network_->input());
-  fill_blob(image, letterbox, network_->input(), network_->pixels(), blob_);
-  network_->infer(blob_);
-  return boxes_of(0, [&](const Candidate& candidate) { return box_in_frame(candidate, letterbox, image.size()); });
+  return std::move(detect_batch({&color_bgr, 1}).front());
 }
 
 std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<const cv::Mat> images) {
-  if (images.size() > 1 && !network_->free_batch()) {
+  if (images.size() > 1 && !free_batch()) {
     throw std::invalid_argument(
         "detector model '" + config().model_path +
         "' takes one image at a time: `yolov5_to_onnx.py --free-batch OLD.onnx NEW.onnx` frees it");
@@ -183,27 +171,22 @@ std::vector<std::vector<vision::Detection>> Detector::detect_batch(std::span<con
     if (images[i].empty()) throw std::invalid_argument("detector: an image of the batch is empty");
     letterboxes.push_back(fit_letterbox(images[i].size(), input));
     cv::Mat blob(std::vector<int>{1, 3, input.height_px, input.width_px}, CV_32F, batch_.ptr(static_cast<int>(i)));
-    fill_blob(to_bgr(images[i]), letterboxes.back(), input, network_->pixels(), blob);
+    fill_blob(to_bgr(images[i]), letterboxes.back(), input, pixels(), blob);
   }
   std::vector<std::vector<vision::Detection>> found;
   if (images.empty()) return found;
-  network_->infer(batch_);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    const auto box_of = [&](const Candidate& candidate) {
-      return box_in_frame(candidate, letterboxes[i], images[i].size());
-    };
-    found.push_back(boxes_of(static_cast<int>(i), box_of));
-  }
+  infer(batch_);
+  for (std::size_t i = 0; i < images.size(); ++i)
+    found.push_back(boxes_of(static_cast<int>(i), letterboxes[i], images[i].size()));
   return found;
 }
 
-std::vector<vision::Detection> Detector::boxes_of(int image, const BoxInFrame& box_of) const {
-  const DetectorConfig& config = network_->config();
+std::vector<vision::Detection> Detector::boxes_of(int image, const Letterbox& letterbox, cv::Size frame) const {
   std::vector<vision::Detection> detections;
-  for (const Candidate& candidate : suppress_non_maxima(network_->candidates(image), config.decode)) {
-    const cv::Rect2f box = box_of(candidate);
+  for (const Candidate& candidate : suppress_non_maxima(candidates(image), config().decode)) {
+    const cv::Rect2f box = box_in_frame(candidate, letterbox, frame);
     if (box.empty()) continue;
-    const std::string& name = config.class_names[static_cast<std::size_t>(candidate.class_index)];
+    const std::string& name = config().class_names[static_cast<std::size_t>(candidate.class_index)];
     detections.push_back({name, candidate.score, box.x, box.y, box.width, box.height});
   }
   return detections;
@@ -259,27 +242,47 @@ void AgreementCount::add(const std::string& difference) {
   if (first_difference.empty()) first_difference = difference;
 }
 
-EngineGuard::EngineGuard(DetectorConfig config) : on_cpu_(config) {
+EngineGuard::EngineGuard(DetectorConfig config, int batch) : on_cpu_(config) {
   static_cast<void>(parse_engine(config.engine));
   on_cpu_.engine = "cpu";
+  guarded([&] { detector_ = std::make_unique<Detector>(std::move(config)); });
+  if (batch > 1) try_batches(batch);
+}
+
+void EngineGuard::guarded(const std::function<void()>& use) {
   try {
-    detector_ = std::make_unique<Detector>(std::move(config));
+    use();
   } catch (const EngineError& error) {
-    fall_back(error.what());
+    fallback_ = error.what();
+    detector_ = std::make_unique<Detector>(on_cpu_);
   }
 }
 
-void EngineGuard::fall_back(const std::string& cause) {
-  fallback_ = cause;
-  detector_ = std::make_unique<Detector>(on_cpu_);
+/// The largest first, which finds out what the memory of the device holds.
+void EngineGuard::try_batches(int most) {
+  const InputSize input = detector_->input_size();
+  const cv::Mat grey(input.height_px, input.width_px, CV_8UC3, cv::Scalar::all(114));
+  const std::vector<cv::Mat> images(static_cast<std::size_t>(most), grey);
+  try {
+    for (std::size_t size = images.size(); size > 1; size = detector_->device() == kCpuDevice ? 1 : size - 1)
+      guarded([&] { detector_->detect_batch(std::span(images).first(size)); });
+  } catch (const std::invalid_argument& error) {
+    no_batch_ = error.what();
+  }
 }
 
-void EngineGuard::warm_up(std::span<const cv::Mat> images) {
-  try {
-    detector_->detect_batch(images);
-  } catch (const EngineError& error) {
-    fall_back(error.what());
-  }
+std::vector<std::vector<vision::Detection>> EngineGuard::detect_batch(std::span<const cv::Mat> images) {
+  if (no_batch_.empty()) return detector_->detect_batch(images);
+  std::vector<std::vector<vision::Detection>> found;
+  for (const cv::Mat& image : images) found.push_back(detector_->detect(image));
+  return found;
+}
+
+std::string EngineGuard::device() const {
+  std::string text = detector_->device();
+  if (!no_batch_.empty()) text += ", one image at a time";
+  if (!fallback_.empty()) text += " in place of the engine asked for: " + fallback_;
+  return text;
 }
 
 }  // namespace rtd::detector

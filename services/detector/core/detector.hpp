@@ -14,6 +14,7 @@
 #include "services/detector/core/decoders/decoder.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
+#include "services/detector/core/network_input.hpp"
 #include "services/detector/core/onnx_file.hpp"
 
 namespace rtd::detector {
@@ -22,7 +23,8 @@ namespace rtd::detector {
 class Network {
  public:
   /// Loads config.model_path into config.engine and runs it once. The decoder is the one that the file's metadata names
-  /// (`rtd.decoder`), else the one that its outputs' shapes fit. Throws ModelError, EngineError.
+  /// (`rtd.decoder`), else the one that its outputs' shapes fit. Throws ModelError when the file is missing, broken, or
+  /// of no known kind; EngineError when the engine or its device is not there.
   explicit Network(DetectorConfig config);
 
   /// Runs the network on a blob (CV_32F, Nx3xHxW, pixels()); N > 1 needs free_batch(). The result is valid until the
@@ -33,10 +35,10 @@ class Network {
 
   /// Whether it takes several images at once.
   bool free_batch() const { return free_batch_; }
-  InputSize input() const { return input_; }
-  PixelFormat pixels() const { return decoder_->pixels(); }
+  InputSize input_size() const { return input_; }
+  const PixelFormat& pixels() const { return family_->pixels; }
   /// The family that it belongs to, for people: "YOLOX".
-  const std::string& family() const { return family_; }
+  std::string family() const { return family_->title; }
   /// What computes it, for people.
   const std::string& device() const { return engine_->device(); }
   /// With class names and heads filled in.
@@ -50,21 +52,18 @@ class Network {
   DetectorConfig config_;
   InputSize input_;
   bool free_batch_ = false;
-  std::string family_;
   std::string wanted_decoder_;  ///< by the file; empty: any
   std::unique_ptr<Engine> engine_;
-  std::unique_ptr<Decoder> decoder_;
+  const DecoderFamily* family_ = nullptr;
+  Decoder decoder_;
   const std::vector<RawOutput>* outputs_ = nullptr;  ///< the engine's, of the last infer()
 };
 
-/// A network of one of the families (decoders/decoder.hpp) on one of the engines (engine.hpp). Not thread-safe; one
-/// instance per thread.
-class Detector {
+/// A network of one of the families (decoders/decoder.hpp) on one of the engines (engine.hpp), for images. Not
+/// thread-safe; one instance per thread.
+class Detector : public Network {
  public:
-  /// Loads the network and runs it once, so that the first detect() is as fast as the others.
-  /// Throws ModelError when the file is missing, broken, or of no known kind; EngineError when the
-  /// engine or its device is not there.
-  explicit Detector(DetectorConfig config);
+  using Network::Network;
 
   /// Objects of one image, best score first; boxes in pixels of the image, clipped to it. 8-bit BGR, BGRA or grey of
   /// any size; an empty image has no objects. Throws std::invalid_argument for another pixel type.
@@ -74,20 +73,10 @@ class Detector {
   /// network whose batch is free: throws std::invalid_argument that names the tool which frees it.
   std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
 
-  InputSize input_size() const { return network_->input(); }
-  /// The family of the network, for people: "YOLOX".
-  const std::string& family() const { return network_->family(); }
-  /// What computes the network, for people.
-  const std::string& device() const { return network_->device(); }
-  /// The configuration in force, with class names and heads filled in.
-  const DetectorConfig& config() const { return network_->config(); }
-
  private:
-  using BoxInFrame = std::function<cv::Rect2f(const Candidate&)>;
-  std::vector<vision::Detection> boxes_of(int image, const BoxInFrame& box_of) const;
+  std::vector<vision::Detection> boxes_of(int image, const Letterbox& letterbox, cv::Size frame) const;
 
-  std::unique_ptr<Network> network_;
-  cv::Mat blob_, batch_;
+  cv::Mat batch_;
 };
 
 /// How far the boxes of two engines may differ.
@@ -109,31 +98,35 @@ struct AgreementCount {
   void add(const std::string& difference);
 };
 
-/// A detector that continues with the CPU when the engine asked for is not there. Not thread-safe.
+/// A detector that continues with the CPU when the engine asked for is not there, and computes one image after the
+/// other when its network takes no batch. Not thread-safe.
 class EngineGuard {
  public:
-  /// Throws ModelError; EngineError only for an engine whose name is wrong.
-  explicit EngineGuard(DetectorConfig config);
+  /// Runs a first batch of each size up to `batch`, so that later ones are as fast as the others; on the CPU, where
+  /// nothing is compiled for a size, only the largest. Throws ModelError; EngineError only for an engine whose name is
+  /// wrong.
+  explicit EngineGuard(DetectorConfig config, int batch = 1);
 
   std::vector<vision::Detection> detect(const cv::Mat& color_bgr) { return detector_->detect(color_bgr); }
-  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images) {
-    return detector_->detect_batch(images);
-  }
-
-  /// Runs a batch that compiles what its size needs. Throws std::invalid_argument as Detector::detect_batch() does;
-  /// falls back when the engine fails.
-  void warm_up(std::span<const cv::Mat> images);
+  /// The boxes of each image, in the order of the images.
+  std::vector<std::vector<vision::Detection>> detect_batch(std::span<const cv::Mat> images);
 
   const Detector& detector() const { return *detector_; }
+  /// What computes the network and why that is not what was asked for, for people.
+  std::string device() const;
   /// Why the CPU is used in place of the engine asked for; empty while it is not.
   const std::string& fallback() const { return fallback_; }
+  /// Why images are computed one by one; empty while they are not.
+  const std::string& no_batch() const { return no_batch_; }
 
  private:
-  void fall_back(const std::string& cause);
+  /// What `use` needs of the detector; with the CPU from now on when the engine fails.
+  void guarded(const std::function<void()>& use);
+  void try_batches(int most);
 
   DetectorConfig on_cpu_;
   std::unique_ptr<Detector> detector_;
-  std::string fallback_;
+  std::string fallback_, no_batch_;
 };
 
 }  // namespace rtd::detector

@@ -36,37 +36,6 @@ void require_combinable(const ServiceConfig& config, const service::Runtime& run
 
 }  // namespace
 
-BatchDetector::BatchDetector(DetectorConfig config, int batch) : guard_(std::move(config)) {
-  if (batch > 1) try_batches(batch);
-}
-
-/// The largest first, which finds out what the memory of the device holds.
-void BatchDetector::try_batches(int most) {
-  const InputSize input = guard_.detector().input_size();
-  const cv::Mat grey(input.height_px, input.width_px, CV_8UC3, cv::Scalar::all(114));
-  const std::vector<cv::Mat> images(static_cast<std::size_t>(most), grey);
-  try {
-    for (std::size_t size = images.size(); size > 1; size = guard_.detector().device() == kCpuDevice ? 1 : size - 1)
-      guard_.warm_up(std::span(images).first(size));
-  } catch (const std::invalid_argument& error) {
-    no_batch_ = error.what();
-  }
-}
-
-std::vector<std::vector<vision::Detection>> BatchDetector::detect(std::span<const cv::Mat> images) {
-  if (no_batch_.empty()) return guard_.detect_batch(images);
-  std::vector<std::vector<vision::Detection>> found;
-  for (const cv::Mat& image : images) found.push_back(guard_.detect(image));
-  return found;
-}
-
-std::string BatchDetector::device() const {
-  std::string text = guard_.detector().device();
-  if (!no_batch_.empty()) text += ", one image at a time";
-  if (!guard_.fallback().empty()) text += " in place of the engine asked for: " + guard_.fallback();
-  return text;
-}
-
 int usual_decoders() {
   return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, kUsualDecoders));
 }
@@ -91,26 +60,20 @@ FleetConfig fleet_config(const ServiceConfig& config, const service::Runtime& ru
 }
 
 Inference load_inference(const ServiceConfig& config) {
-  try {
-    const auto detector = std::make_shared<BatchDetector>(core_config(config), config.batch);
-    const Detector& loaded = detector->guard().detector();
-    const InputSize input = loaded.input_size();
-    SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"", loaded.config().model_path,
-                input.width_px, input.height_px, config.core.threads, loaded.device());
-    if (!detector->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", detector->no_batch());
-    const auto log = std::make_shared<EngineLog>(config.core.engine);
-    log->report(detector->guard());
-    return {[detector, log](std::span<const cv::Mat> images) {
-              auto found = detector->detect(images);
-              log->report(detector->guard());
-              return found;
-            },
-            [detector] { return "computes on " + detector->device(); }};
-  } catch (const ModelError& error) {
-    throw service::ConfigError(error.what());
-  } catch (const EngineError& error) {
-    throw service::ConfigError(std::string("detector.engine: ") + error.what());
-  }
+  const auto guard = load_network([&] { return std::make_shared<EngineGuard>(core_config(config), config.batch); });
+  const Detector& loaded = guard->detector();
+  const InputSize input = loaded.input_size();
+  SPDLOG_INFO("event=model_loaded file={} input={}x{} threads={} device=\"{}\"", loaded.config().model_path,
+              input.width_px, input.height_px, config.core.threads, loaded.device());
+  if (!guard->no_batch().empty()) SPDLOG_WARN("event=no_batch cause=\"{}\"", guard->no_batch());
+  const auto log = std::make_shared<EngineLog>(config.core.engine);
+  log->report(*guard);
+  return {[guard, log](std::span<const cv::Mat> images) {
+            auto found = guard->detect_batch(images);
+            log->report(*guard);
+            return found;
+          },
+          [guard] { return "computes on " + guard->device(); }};
 }
 
 }  // namespace rtd::detector

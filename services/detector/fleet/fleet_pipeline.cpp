@@ -63,50 +63,14 @@ void FleetArrivals::close() {
   changed_.notify_all();
 }
 
-WorkerPool::WorkerPool(int threads) {
-  for (int i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
-}
-
-WorkerPool::~WorkerPool() {
-  {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-  }
-  started_.notify_all();
-  for (std::thread& helper : helpers_) helper.join();
-}
-
-void WorkerPool::for_each(std::size_t parts, const Work& work) {
-  {
-    const std::lock_guard lock(mutex_);
-    work_ = &work;
-    parts_ = parts;
-    next_ = 0;
-    helping_ = helpers_.size();
-    ++job_;
-  }
-  started_.notify_all();
+void share_parts(std::size_t parts, int threads, const std::function<void(std::size_t part)>& work) {
+  std::atomic<std::size_t> next{0};
+  const auto run_parts = [&] {
+    for (std::size_t part = next++; part < parts; part = next++) work(part);
+  };
+  std::vector<std::jthread> helpers;
+  for (std::size_t i = 1; i < std::min(parts, static_cast<std::size_t>(threads)); ++i) helpers.emplace_back(run_parts);
   run_parts();
-  std::unique_lock lock(mutex_);
-  ended_.wait(lock, [this] { return helping_ == 0; });
-}
-
-void WorkerPool::help() {
-  std::uint64_t done = 0;
-  std::unique_lock lock(mutex_);
-  while (true) {
-    started_.wait(lock, [&] { return closed_ || job_ != done; });
-    if (closed_) return;
-    done = job_;
-    lock.unlock();
-    run_parts();
-    lock.lock();
-    if (--helping_ == 0) ended_.notify_one();
-  }
-}
-
-void WorkerPool::run_parts() {
-  for (std::size_t part = next_++; part < parts_; part = next_++) (*work_)(part);
 }
 
 FleetPipeline::FleetPipeline(const FleetConfig& config, Inference inference, Outputs outputs)
@@ -158,7 +122,7 @@ FleetPipeline::Clock::time_point FleetPipeline::decode_at(Clock::time_point bega
 
 FleetPipeline::Batch FleetPipeline::decode(const std::vector<FleetArrivals::Queue::Taken>& taken) {
   std::vector<cv::Mat> decoded(taken.size());
-  decoders_.for_each(taken.size(), [&](std::size_t i) { decoded[i] = pixels_of(*taken[i].image); });
+  share_parts(taken.size(), decoders_, [&](std::size_t i) { decoded[i] = pixels_of(*taken[i].image); });
   Batch batch;
   for (std::size_t i = 0; i < taken.size(); ++i) {
     if (decoded[i].empty()) {

@@ -47,36 +47,10 @@ class FleetArrivals {
   bool closed_ = false;
 };
 
-/// Threads that share the parts of a job. cv::parallel_for_() has one number of threads for the whole process, which
+/// Runs work(0) to work(parts - 1), each once, on up to `threads` threads, this one among them, and returns when all
+/// have ended. `work` must not throw. cv::parallel_for_() has one number of threads for the whole process, which
 /// belongs to the network.
-class WorkerPool {
- public:
-  using Work = std::function<void(std::size_t part)>;
-
-  /// `threads` at least 1; the thread that calls for_each() is one of them.
-  explicit WorkerPool(int threads);
-  ~WorkerPool();
-  WorkerPool(const WorkerPool&) = delete;
-  WorkerPool& operator=(const WorkerPool&) = delete;
-
-  /// Runs work(0) to work(parts - 1), each once, and returns when all have ended. `work` must not throw. To be called
-  /// by one thread at a time.
-  void for_each(std::size_t parts, const Work& work);
-
- private:
-  void help();
-  void run_parts();
-
-  std::mutex mutex_;
-  std::condition_variable started_, ended_;
-  const Work* work_ = nullptr;
-  std::size_t parts_ = 0;
-  std::atomic<std::size_t> next_{0};
-  std::uint64_t job_ = 0;
-  std::size_t helping_ = 0;  ///< threads that have not finished this job
-  bool closed_ = false;
-  std::vector<std::thread> helpers_;
-};
+void share_parts(std::size_t parts, int threads, const std::function<void(std::size_t part)>& work);
 
 /// One place between two threads. The first one can wait until the second one wants something, so that it does not
 /// prepare what will be old when it is used. Thread-safe.
@@ -195,7 +169,7 @@ class FleetPipeline {
   const Outputs outputs_;
   FleetArrivals arrivals_;
   Handover<Batch> handover_;
-  WorkerPool decoders_;
+  const int decoders_;        ///< threads
   mutable std::mutex mutex_;  ///< guards the next two
   StageTiming timing_;
   std::string device_;

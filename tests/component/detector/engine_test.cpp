@@ -52,7 +52,7 @@ class EngineTest : public ::testing::Test {
     other.engine = full_name(engine);
     Network cpu(config), compared(other);
     EXPECT_THAT(compared.device(), HasSubstr("ONNX Runtime 1."));
-    cv::Mat blob(std::vector<int>{1, 3, cpu.input().height_px, cpu.input().width_px}, CV_32F);
+    cv::Mat blob(std::vector<int>{1, 3, cpu.input_size().height_px, cpu.input_size().width_px}, CV_32F);
     cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
     std::vector<RawOutput> a = cpu.infer(blob), b = compared.infer(blob);
     for (auto* heads : {&a, &b}) std::ranges::sort(*heads, {}, &RawOutput::shape);  // each has its own order

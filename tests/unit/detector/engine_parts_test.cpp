@@ -107,7 +107,7 @@ TEST(Network, equals_opencv) {
   config.engine = "cpu";
   config.model_path = model.path;
   Network network(config);
-  cv::Mat blob(std::vector<int>{1, 3, network.input().height_px, network.input().width_px}, CV_32F);
+  cv::Mat blob(std::vector<int>{1, 3, network.input_size().height_px, network.input_size().width_px}, CV_32F);
   cv::RNG(5).fill(blob, cv::RNG::UNIFORM, 0.0, 1.0);
 
   const std::vector<RawOutput>& heads = network.infer(blob);

@@ -6,10 +6,6 @@
 #include <cmath>
 #include <functional>
 
-#include "services/detector/core/decoders/nanodet.hpp"
-#include "services/detector/core/decoders/yolov5.hpp"
-#include "services/detector/core/decoders/yolox.hpp"
-
 namespace rtd::detector {
 
 bool is_finite(const Candidate& box) {

@@ -3,8 +3,9 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -46,23 +47,18 @@ struct NetworkFacts {
   std::vector<HeadLayout> heads;  ///< YOLOv5: strides and anchors
 };
 
-/// Makes boxes of the outputs of one family of networks. Holds no state; may be shared by threads.
-class Decoder {
- public:
-  virtual ~Decoder() = default;
-  virtual PixelFormat pixels() const = 0;
-  /// The boxes of one image (0 to N - 1) whose scores pass, before suppression, in pixels of the input. The outputs
-  /// have the shapes that the decoder was made for.
-  virtual std::vector<Candidate> decode(const std::vector<RawOutput>& outputs, int image,
-                                        const DecodeConfig& config) const = 0;
-};
+/// Makes boxes of the outputs of one family of networks: those of one image (0 to N - 1) whose scores pass, before
+/// suppression, in pixels of the input. The outputs have the shapes that it was made for. May be shared by threads.
+using Decoder =
+    std::function<std::vector<Candidate>(const std::vector<RawOutput>& outputs, int image, const DecodeConfig& config)>;
 
 /// A family of networks.
 struct DecoderFamily {
   const char* name;   ///< in the metadata of a file, `rtd.decoder`
   const char* title;  ///< for people
-  /// A decoder for outputs of these shapes, null when they are not this family's. Only shapes are looked at.
-  std::unique_ptr<Decoder> (*make)(const NetworkFacts& facts, const std::vector<RawOutput>& outputs);
+  PixelFormat pixels;
+  /// A decoder for outputs of these shapes, empty when they are not this family's. Only shapes are looked at.
+  Decoder (*make)(const NetworkFacts& facts, const std::vector<RawOutput>& outputs);
   /// The shapes that it expects, for people.
   std::string (*expected)(const NetworkFacts& facts);
   /// How many classes outputs of these shapes have if they are this family's.
@@ -82,5 +78,52 @@ std::string shapes_text(const std::vector<RawOutput>& outputs);
 
 /// The strides of networks without anchors.
 inline constexpr std::array<int, 3> kStrides = {8, 16, 32};
+
+/// The raw output of one head: `3 * (5 + classes)` planes of rows x cols logits, per anchor x y w h objectness classes.
+struct HeadLogits {
+  const float* logits = nullptr;
+  int rows = 0, cols = 0;
+  HeadLayout layout;
+};
+
+/// Decodes YOLOv5 heads (ultralytics v5, `Detect`): with s = sigmoid,
+///   x = (2 s(tx) - 0.5 + column) stride,  w = (2 s(tw))^2 anchor_w,  score = s(objectness) max_c s(class_c).
+/// Only cells whose objectness logit passes are looked at, so an empty image costs one comparison a cell. Cells with a
+/// NaN in objectness, box or all classes yield nothing. Order: head, anchor, row, column.
+std::vector<Candidate> decode_heads(const std::vector<HeadLogits>& heads, int class_count, const DecodeConfig& config);
+
+/// The family: one output 1 x 3 (5 + classes) x rows x cols per stride, in any order; pixels RGB / 255.
+DecoderFamily yolov5_family();
+
+/// Strides and anchors of YOLOv5 and YOLOv5-Lite as published.
+std::vector<HeadLayout> yolov5_heads();
+
+/// Decodes the output of YOLOX (decoupled heads, no anchors): one row a cell, strides 8, 16, 32, x fastest; a row is
+/// x y w h objectness classes, the last two with their sigmoid applied:
+///   centre = ((x, y) + cell) stride,  size = exp((w, h)) stride,  score = objectness max_c class_c.
+/// Rows with a NaN in objectness, box or all classes yield nothing. `rows` are as many as the cells of `input`.
+std::vector<Candidate> decode_yolox(std::span<const float> rows, InputSize input, int class_count,
+                                    const DecodeConfig& config);
+
+/// The family: one output 1 x cells x (5 + classes); pixels BGR, 0 to 255.
+DecoderFamily yolox_family();
+
+/// The output of NanoDet's head of one stride: planes of rows x cols logits, first the classes, then for each side of
+/// the box (left, top, right, bottom) the bins of a distribution of its distance.
+struct DistanceHead {
+  const float* logits = nullptr;
+  int rows = 0, cols = 0, stride_px = 0, bins = 0;
+};
+
+/// Decodes heads of NanoDet (generalised focal loss, no anchors): with s = sigmoid,
+///   score = max_c s(class_c),  distance of a side = stride sum_k k softmax(bins)_k  from the centre of the cell,
+///   which is ((column, row) + 0.5) stride.
+/// Cells with a NaN in the box or in all classes yield nothing.
+std::vector<Candidate> decode_nanodet(const std::vector<DistanceHead>& heads, int class_count,
+                                      const DecodeConfig& config);
+
+/// The family: one output 1 x (classes + 4 bins) x rows x cols for each of the strides 8, 16, 32, in any order, with
+/// the same number of bins, 2 to 32; pixels BGR, normalised by the mean and deviation of ImageNet.
+DecoderFamily nanodet_family();
 
 }  // namespace rtd::detector

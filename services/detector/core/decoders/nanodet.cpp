@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/decoders/nanodet.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -60,29 +60,6 @@ void place_box(const DistanceCell& cell, int class_count, Candidate& box) {
   box.bottom_px = y_px + distance_px(cell, class_count, 3);
 }
 
-class NanodetDecoder final : public Decoder {
- public:
-  /// `strides_px` are those of the outputs, in their order.
-  NanodetDecoder(std::vector<int> strides_px, int bins, int class_count)
-      : strides_px_(std::move(strides_px)), bins_(bins), class_count_(class_count) {}
-
-  PixelFormat pixels() const override {
-    return {
-        .rgb = false, .offset = {103.53F, 116.28F, 123.675F}, .scale = {1.0F / 57.375F, 1.0F / 57.12F, 1.0F / 58.395F}};
-  }
-  std::vector<Candidate> decode(const std::vector<RawOutput>& outputs, int image,
-                                const DecodeConfig& config) const override {
-    std::vector<DistanceHead> heads;
-    for (std::size_t i = 0; i < outputs.size(); ++i)
-      heads.push_back({outputs[i].of(image).data(), outputs[i].shape[2], outputs[i].shape[3], strides_px_[i], bins_});
-    return decode_nanodet(heads, class_count_, config);
-  }
-
- private:
-  std::vector<int> strides_px_;
-  int bins_, class_count_;
-};
-
 /// The bins that heads of so many planes have; 0 when there is no such number.
 int bins_in(int planes, int class_count) {
   const int bins = (planes - class_count) / kSides;
@@ -106,11 +83,17 @@ std::vector<int> strides_of(const NetworkFacts& facts, const std::vector<RawOutp
   return strides_px;
 }
 
-std::unique_ptr<Decoder> make_nanodet(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
-  std::vector<int> strides_px = strides_of(facts, outputs);
+Decoder make_nanodet(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
+  const std::vector<int> strides_px = strides_of(facts, outputs);
   const int bins = strides_px.empty() ? 0 : bins_in(outputs[0].shape[1], facts.class_count);
-  if (bins == 0) return nullptr;
-  return std::make_unique<NanodetDecoder>(std::move(strides_px), bins, facts.class_count);
+  if (bins == 0) return {};
+  return [strides_px, bins, classes = facts.class_count](const std::vector<RawOutput>& given, int image,
+                                                         const DecodeConfig& config) {
+    std::vector<DistanceHead> heads;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      heads.push_back({given[i].of(image).data(), given[i].shape[2], given[i].shape[3], strides_px[i], bins});
+    return decode_nanodet(heads, classes, config);
+  };
 }
 
 std::string nanodet_shapes(const NetworkFacts& facts) {
@@ -150,7 +133,9 @@ std::vector<Candidate> decode_nanodet(const std::vector<DistanceHead>& heads, in
 }
 
 DecoderFamily nanodet_family() {
-  return {"nanodet", "NanoDet", make_nanodet, nanodet_shapes, nanodet_classes};
+  const PixelFormat pixels{
+      .rgb = false, .offset = {103.53F, 116.28F, 123.675F}, .scale = {1.0F / 57.375F, 1.0F / 57.12F, 1.0F / 58.395F}};
+  return {"nanodet", "NanoDet", pixels, make_nanodet, nanodet_shapes, nanodet_classes};
 }
 
 }  // namespace rtd::detector

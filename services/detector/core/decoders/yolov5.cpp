@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/decoders/yolov5.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -68,37 +68,23 @@ std::vector<int> shape_of(const HeadLayout& layout, const NetworkFacts& facts) {
           facts.input.width_px / layout.stride_px};
 }
 
-class Yolov5Decoder final : public Decoder {
- public:
-  /// `layouts` are those of the outputs, in their order.
-  Yolov5Decoder(std::vector<HeadLayout> layouts, int class_count)
-      : layouts_(std::move(layouts)), class_count_(class_count) {}
-
-  PixelFormat pixels() const override { return {}; }
-  std::vector<Candidate> decode(const std::vector<RawOutput>& outputs, int image,
-                                const DecodeConfig& config) const override {
-    std::vector<HeadLogits> heads;
-    for (std::size_t i = 0; i < outputs.size(); ++i)
-      heads.push_back({outputs[i].of(image).data(), outputs[i].shape[2], outputs[i].shape[3], layouts_[i]});
-    return decode_heads(heads, class_count_, config);
-  }
-
- private:
-  std::vector<HeadLayout> layouts_;
-  int class_count_;
-};
-
 /// Gives every output the layout whose stride fits its cells, whatever the order of the outputs.
-std::unique_ptr<Decoder> make_yolov5(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
-  if (outputs.size() != facts.heads.size()) return nullptr;
+Decoder make_yolov5(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
+  if (outputs.size() != facts.heads.size()) return {};
   std::vector<HeadLayout> layouts(outputs.size());
   for (const HeadLayout& layout : facts.heads) {
     const auto fits = [&](const RawOutput& output) { return output.shape == shape_of(layout, facts); };
     const auto found = std::ranges::find_if(outputs, fits);
-    if (found == outputs.end()) return nullptr;
+    if (found == outputs.end()) return {};
     layouts[static_cast<std::size_t>(found - outputs.begin())] = layout;
   }
-  return std::make_unique<Yolov5Decoder>(std::move(layouts), facts.class_count);
+  return [layouts, classes = facts.class_count](const std::vector<RawOutput>& given, int image,
+                                                const DecodeConfig& config) {
+    std::vector<HeadLogits> heads;
+    for (std::size_t i = 0; i < given.size(); ++i)
+      heads.push_back({given[i].of(image).data(), given[i].shape[2], given[i].shape[3], layouts[i]});
+    return decode_heads(heads, classes, config);
+  };
 }
 
 std::string yolov5_shapes(const NetworkFacts& facts) {
@@ -150,7 +136,7 @@ std::vector<HeadLayout> yolov5_heads() {
 }
 
 DecoderFamily yolov5_family() {
-  return {"yolov5", "YOLOv5", make_yolov5, yolov5_shapes, yolov5_classes};
+  return {"yolov5", "YOLOv5", {}, make_yolov5, yolov5_shapes, yolov5_classes};
 }
 
 }  // namespace rtd::detector

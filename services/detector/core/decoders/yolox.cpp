@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/decoders/yolox.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -49,21 +49,6 @@ std::optional<Candidate> decode_row(const Row& row, float least_score) {
   return is_finite(box) ? std::optional(box) : std::nullopt;
 }
 
-class YoloxDecoder final : public Decoder {
- public:
-  explicit YoloxDecoder(const NetworkFacts& facts) : input_(facts.input), class_count_(facts.class_count) {}
-
-  PixelFormat pixels() const override { return {.rgb = false, .offset = {}, .scale = {1, 1, 1}}; }
-  std::vector<Candidate> decode(const std::vector<RawOutput>& outputs, int image,
-                                const DecodeConfig& config) const override {
-    return decode_yolox(outputs.front().of(image), input_, class_count_, config);
-  }
-
- private:
-  InputSize input_;
-  int class_count_;
-};
-
 bool has_cells(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
   return outputs.size() == 1 && outputs[0].shape.size() == 3 && outputs[0].shape[1] == cells_of(facts.input);
 }
@@ -73,9 +58,11 @@ std::optional<int> yolox_classes(const NetworkFacts& facts, const std::vector<Ra
   return outputs[0].shape[2] - kBoxNumbers;
 }
 
-std::unique_ptr<Decoder> make_yolox(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
-  if (yolox_classes(facts, outputs) != facts.class_count) return nullptr;
-  return std::make_unique<YoloxDecoder>(facts);
+Decoder make_yolox(const NetworkFacts& facts, const std::vector<RawOutput>& outputs) {
+  if (yolox_classes(facts, outputs) != facts.class_count) return {};
+  return [facts](const std::vector<RawOutput>& given, int image, const DecodeConfig& config) {
+    return decode_yolox(given.front().of(image), facts.input, facts.class_count, config);
+  };
 }
 
 std::string yolox_shapes(const NetworkFacts& facts) {
@@ -102,7 +89,8 @@ std::vector<Candidate> decode_yolox(std::span<const float> rows, InputSize input
 }
 
 DecoderFamily yolox_family() {
-  return {"yolox", "YOLOX", make_yolox, yolox_shapes, yolox_classes};
+  const PixelFormat pixels{.rgb = false, .offset = {}, .scale = {1, 1, 1}};
+  return {"yolox", "YOLOX", pixels, make_yolox, yolox_shapes, yolox_classes};
 }
 
 }  // namespace rtd::detector

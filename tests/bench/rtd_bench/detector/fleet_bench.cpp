@@ -84,7 +84,7 @@ void send(detector::FleetPipeline& pipeline, const Jpegs& jpegs, const FleetLoad
   pipeline.close();
 }
 
-void serve(const std::shared_ptr<detector::BatchDetector>& detector, const Jpegs& jpegs, const FleetLoad& load,
+void serve(const std::shared_ptr<detector::EngineGuard>& detector, const Jpegs& jpegs, const FleetLoad& load,
            FleetResult& result) {
   const Clock::time_point begin = Clock::now() + duration_of(std::min(kLongestWarmUpS, load.seconds));
   const Clock::time_point end = begin + duration_of(load.seconds);
@@ -94,7 +94,7 @@ void serve(const std::shared_ptr<detector::BatchDetector>& detector, const Jpegs
   config.decoders = detector::usual_decoders();
   detector::FleetPipeline pipeline(
       config,
-      {[detector](std::span<const cv::Mat> images) { return detector->detect(images); },
+      {[detector](std::span<const cv::Mat> images) { return detector->detect_batch(images); },
        [detector] { return detector->device(); }},
       {[&answers](const std::string& robot, const detector::Answer& answer) { answers.add(robot, answer); },
        [](const std::string&, const std::string&) {}, [] {}});
@@ -121,11 +121,11 @@ std::vector<FleetResult> bench_fleet(std::span<const cv::Mat> images, const Dete
   const Jpegs jpegs = encode(images);
   for (const std::string& engine : options.engines) {
     for (const int batch : options.batches) {
-      std::shared_ptr<detector::BatchDetector> detector;
+      std::shared_ptr<detector::EngineGuard> detector;
       std::string failure;
       try {
-        detector = std::make_shared<detector::BatchDetector>(config_of(options, engine), batch);
-        const std::string& fallback = detector->guard().fallback();
+        detector = std::make_shared<detector::EngineGuard>(config_of(options, engine), batch);
+        const std::string& fallback = detector->fallback();
         failure = fallback.empty() ? detector->no_batch() : fallback;
       } catch (const std::exception& error) {
         failure = error.what();

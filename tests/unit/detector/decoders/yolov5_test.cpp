@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "services/detector/core/decoders/yolov5.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 namespace rtd::detector {
 namespace {

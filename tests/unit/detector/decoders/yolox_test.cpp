@@ -1,13 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/decoders/yolox.hpp"
+#include "services/detector/core/decoders/decoder.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
-
-#include "services/detector/core/decoders/yolov5.hpp"
 
 namespace rtd::detector {
 namespace {
