@@ -8,8 +8,7 @@
 
 #include "common/io/byte_sink.hpp"
 #include "common/io/input_file.hpp"
-#include "common/vision/jpeg_codec.hpp"
-#include "common/vision/png_codec.hpp"
+#include "common/vision/image_decoders.hpp"
 
 namespace rtd::vision {
 namespace {
@@ -51,6 +50,13 @@ std::vector<std::uint8_t> encode_image(std::string extension, const cv::Mat& ima
   if (extension == ".png") return encode_png(image);
   if (extension == ".jpg" || extension == ".jpeg") return encode_jpeg(image);
   return {};
+}
+
+bool write_image(const std::filesystem::path& file, const cv::Mat& image, io::AtomicOptions options) {
+  const std::vector<std::uint8_t> bytes = encode_image(file.extension().string(), image);
+  if (bytes.empty()) return false;
+  io::write_file(file, std::as_bytes(std::span(bytes)), options);
+  return true;
 }
 
 }  // namespace rtd::vision

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "common/io/atomic_file.hpp"
+
 namespace rtd::vision {
 
 /// By their first bytes. A new format needs its name here, in format_of(), in kReadableFormats and in decode_image().
@@ -62,8 +64,11 @@ std::vector<std::uint8_t> encode_jpeg(const cv::Mat& image, int quality = 95);
 /// type or no pixels. Thread-safe.
 std::vector<std::uint8_t> encode_png(const cv::Mat& image);
 
-/// By an extension: .png, .jpg or .jpeg in any case. Empty: another one, or the image cannot be encoded. image_file.hpp
-/// writes files.
+/// By an extension: .png, .jpg or .jpeg in any case. Empty: another one, or the image cannot be encoded.
 std::vector<std::uint8_t> encode_image(std::string extension, const cv::Mat& image);
+
+/// Writes an image file as io::AtomicFile does, encoded by its extension. False: another extension than those of
+/// encode_image(), or the image cannot be encoded. Throws io::IoError.
+bool write_image(const std::filesystem::path& file, const cv::Mat& image, io::AtomicOptions options = {});
 
 }  // namespace rtd::vision

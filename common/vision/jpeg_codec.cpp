@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "common/vision/jpeg_codec.hpp"
+#include "common/vision/image_decoders.hpp"
 
 #include <jerror.h>   // after jpeglib.h
 #include <jpeglib.h>  // after <cstdio>
@@ -34,9 +34,9 @@ class Tiff {
   bool little_;
 };
 
-}  // namespace
-
-// A TIFF header (order, 42, offset of the first directory), then entries of 12 bytes: tag, type, count, value.
+/// 1 to 8 of the EXIF data (the tag "Orientation" of TIFF 6.0), or 1 where there are none. `app1`: the contents of a
+/// JPEG's marker APP1: a TIFF header (order, 42, offset of the first directory), then entries of 12 bytes: tag, type,
+/// count, value.
 int exif_orientation(std::span<const std::uint8_t> app1) {
   constexpr std::array<std::uint8_t, 6> kExif = {'E', 'x', 'i', 'f', 0, 0};
   constexpr std::uint32_t kOrientation = 0x0112;
@@ -53,6 +53,7 @@ int exif_orientation(std::span<const std::uint8_t> app1) {
   return 1;
 }
 
+/// The image as it is meant to be looked at.
 cv::Mat turn_upright(const cv::Mat& image, int orientation) {
   constexpr int kKeep = 9;
   constexpr std::array<int, 9> kFlips = {kKeep, kKeep, 1, -1, 0, kKeep, 1, -1, 0};  // cv::flip's codes
@@ -64,8 +65,6 @@ cv::Mat turn_upright(const cv::Mat& image, int orientation) {
   cv::flip(turned, flipped, flip);
   return flipped;
 }
-
-namespace {
 
 constexpr int kMaxScans = 64;                     // progressive JPEGs of cameras and programs have about ten
 constexpr std::int64_t kMaxPixelsPerByte = 1024;  // the emptiest grey image has 512: one bit for 8 x 8 px

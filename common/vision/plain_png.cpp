@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The file format: W3C, Portable Network Graphics (PNG) Specification, 2003.
-#include "common/vision/plain_png.hpp"
-
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -14,7 +12,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 #include <string_view>
 
-#include "common/vision/png_codec.hpp"
+#include "common/vision/image_decoders.hpp"
 
 namespace rtd::vision {
 namespace {

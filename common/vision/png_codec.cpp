@@ -3,7 +3,7 @@
 //
 // libpng reports errors by longjmp, which passes over destructors. So everything between setjmp and longjmp belongs to
 // objects that are made before.
-#include "common/vision/png_codec.hpp"
+#include "common/vision/image_decoders.hpp"
 
 #include <png.h>
 
@@ -13,8 +13,6 @@
 #include <new>
 #include <optional>
 #include <utility>
-
-#include "common/vision/plain_png.hpp"
 
 namespace rtd::vision {
 namespace {

@@ -15,7 +15,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/run_service.hpp"
 #include "common/vision/image_codecs.hpp"
-#include "common/vision/image_file.hpp"
 #include "services/camera/camera_service.hpp"
 #include "services/camera/core/preview.hpp"
 #include "services/camera/live_camera.hpp"

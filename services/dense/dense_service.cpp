@@ -20,7 +20,7 @@
 #include "common/service/config.hpp"
 #include "common/service/metric_names.hpp"
 #include "common/service/monotonic_clock.hpp"
-#include "common/vision/image_file.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "common/vision/rgbd_image.hpp"
 
 namespace rtd::dense {

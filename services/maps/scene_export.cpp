@@ -17,7 +17,7 @@
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"
 #include "common/service/exit_code.hpp"
-#include "common/vision/image_file.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/maps/scene.hpp"
 
 namespace rtd::maps {

@@ -8,7 +8,7 @@
 
 #include "common/camera/calibration.hpp"
 #include "common/io/atomic_file.hpp"
-#include "common/vision/image_file.hpp"
+#include "common/vision/image_codecs.hpp"
 
 namespace rtd::camera {
 namespace {

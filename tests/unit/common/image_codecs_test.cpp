@@ -17,9 +17,9 @@
 
 #include "common/msg/largest_sample.hpp"
 #include "common/msg/ros.hpp"
-#include "common/vision/image_file.hpp"
+#include "common/vision/image_codecs.hpp"
+#include "common/vision/image_decoders.hpp"
 #include "common/vision/jpeg_size.hpp"
-#include "common/vision/plain_png.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/time_bounds.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "common/camera/source_factory.hpp"
 #include "common/run_record/run_record.hpp"
-#include "common/vision/image_file.hpp"
+#include "common/vision/image_codecs.hpp"
 #include "services/slam/map_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
