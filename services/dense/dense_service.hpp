@@ -20,7 +20,6 @@
 #include "services/dense/core/navigation_map.hpp"
 #include "services/dense/core/static_map.hpp"
 #include "services/dense/frame_joiner.hpp"
-#include "services/dense/keyframe_masks.hpp"
 
 namespace rtd::dense {
 

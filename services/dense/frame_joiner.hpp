@@ -6,9 +6,11 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "common/msg/rgbd_frame.hpp"
@@ -87,6 +89,23 @@ class FrameJoiner {
   std::optional<std::int64_t> last_stamp_ns_;
   JoinCounters counters_;
   bool elsewhere_ = false, closed_ = false;
+};
+
+/// Finds the filter's masks of slam's keyframes: in real time slam names a keyframe when later frames have come.
+/// Bounded: the oldest are dropped first. Thread-safe.
+class KeyframeMasks {
+ public:
+  static constexpr std::size_t kRecent = 256;  ///< frames, about 19 kB each
+
+  void put(std::int64_t stamp_ns, const DynamicMask& mask);
+  void put(const msg::KeyframeEvent& event);
+  /// Those found since the last call, by stamp.
+  std::map<std::int64_t, DynamicMask> take();
+
+ private:
+  std::mutex mutex_;
+  std::map<std::int64_t, DynamicMask> recent_, found_;
+  std::set<std::int64_t> awaited_;  ///< keyframes whose masks have not come
 };
 
 }  // namespace rtd::dense

@@ -6,22 +6,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <opencv2/imgproc.hpp>
 
 namespace rtd::dense {
-namespace {
-
-/// Largest value within `radius` along one axis: `count` values, `step` apart.
-void grow_line(const std::uint8_t* in, std::uint8_t* out, int count, int step, int radius) {
-  for (int i = 0; i < count; ++i) {
-    std::uint8_t largest = 0;
-    for (int k = std::max(0, i - radius); k <= std::min(count - 1, i + radius); ++k) {
-      largest = std::max(largest, in[static_cast<std::ptrdiff_t>(k) * step]);
-    }
-    out[static_cast<std::ptrdiff_t>(i) * step] = largest;
-  }
-}
-
-}  // namespace
 
 std::uint8_t DynamicMask::at(float u_px, float v_px, int width_px, int height_px) const {
   if (!(u_px >= 0 && v_px >= 0)) return kUnknown;
@@ -32,14 +19,10 @@ std::uint8_t DynamicMask::at(float u_px, float v_px, int width_px, int height_px
 }
 
 DynamicMask grow(const DynamicMask& mask, int radius) {
-  DynamicMask wide = mask, result = mask;
-  for (int row = 0; row < mask.rows; ++row) {
-    const std::ptrdiff_t first = std::ptrdiff_t{row} * mask.columns;
-    grow_line(mask.cells.data() + first, wide.cells.data() + first, mask.columns, 1, radius);
-  }
-  for (int column = 0; column < mask.columns; ++column) {
-    grow_line(wide.cells.data() + column, result.cells.data() + column, mask.rows, mask.columns, radius);
-  }
+  DynamicMask result = mask;
+  cv::Mat cells(result.rows, result.columns, CV_8U, result.cells.data());
+  const int side = 2 * radius + 1;
+  cv::dilate(cells, cells, cv::getStructuringElement(cv::MORPH_RECT, {side, side}));
   return result;
 }
 

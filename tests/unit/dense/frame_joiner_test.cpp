@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "services/dense/frame_joiner.hpp"
-#include "services/dense/keyframe_masks.hpp"
 
 namespace rtd::dense {
 namespace {
