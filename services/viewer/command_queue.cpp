@@ -47,23 +47,10 @@ void CommandQueue::work() {
 
 CommandResult CommandQueue::carry_out(const Call& call) {
   try {
-    const bus::CommandAnswer answer = client_.call(call.name, call.argument, timeout_of(call.name));
-    return {answer.success, answer.message};
+    return client_.call(call.name, call.argument, timeout_of(call.name));
   } catch (const bus::BusError& error) {
     return {false, error.what()};
   }
-}
-
-CommandInfo info_of(const bus::FoundCommand& command) {
-  switch (command.kind) {
-    case bus::CommandKind::kSetBool:
-      return {command.full_name(), ArgumentKind::kBool};
-    case bus::CommandKind::kText:
-      return {command.full_name(), ArgumentKind::kText};
-    case bus::CommandKind::kTrigger:
-      break;
-  }
-  return {command.full_name(), ArgumentKind::kNone};
 }
 
 }  // namespace rtd::viewer

@@ -45,7 +45,4 @@ class CommandQueue {
   std::thread thread_;
 };
 
-/// As the viewer's protocols name them.
-CommandInfo info_of(const bus::FoundCommand& command);
-
 }  // namespace rtd::viewer

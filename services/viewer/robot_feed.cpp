@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/bus/robot.hpp"
+#include "common/msg/fields.hpp"
 #include "common/msg/stamps.hpp"
 #include "common/ros2/schema_texts.hpp"
 #include "common/service/log.hpp"
@@ -29,29 +30,16 @@ bool is_of_unnamed_robot(const std::string& wire_name) {
 
 /// Of a message in memory, nearly.
 template <class T>
-std::size_t bytes_of(const T&) {
-  return sizeof(T);
-}
-std::size_t bytes_of(const msg::CompressedImage& image) {
-  return sizeof(image) + image.data.size();
-}
-std::size_t bytes_of(const msg::Image& image) {
-  return sizeof(image) + image.data.size();
-}
-std::size_t bytes_of(const msg::PointCloud2& cloud) {
-  return sizeof(cloud) + cloud.data.size();
-}
-std::size_t bytes_of(const msg::OccupancyGrid& plan) {
-  return plan.data.size();
-}
-std::size_t bytes_of(const msg::Detection2DArray& detections) {
-  return sizeof(detections) + detections.detections.size() * sizeof(msg::Detection2D);
-}
-std::size_t bytes_of(const msg::MapUpdate& update) {
-  std::size_t bytes = sizeof(update) + update.loop_edges.size() * sizeof(std::uint32_t);
-  for (const msg::MapKeyframe& keyframe : update.keyframes)
-    bytes +=
-        sizeof(keyframe) + keyframe.points_m.size() * sizeof(float) + keyframe.covisible.size() * sizeof(std::uint32_t);
+std::size_t bytes_of(const T& value) {
+  std::size_t bytes = sizeof(T);
+  if constexpr (msg::Message<T>) {
+    msg::for_each_field(value, [&](const char*, const auto& field) { bytes += bytes_of(field) - sizeof(field); });
+  } else if constexpr (requires { value.capacity(); }) {
+    using Element = typename T::value_type;
+    bytes += value.size() * sizeof(Element);
+    if constexpr (msg::Message<Element>)
+      for (const Element& element : value) bytes += bytes_of(element) - sizeof(Element);
+  }
   return bytes;
 }
 

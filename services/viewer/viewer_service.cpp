@@ -322,7 +322,7 @@ void ViewerService::refresh_commands() {
   std::map<std::string, std::vector<CommandInfo>> by_robot;
   for (const bus::FoundCommand& command : found) {
     if (command.vendor.empty()) continue;  // not callable
-    all.push_back(info_of(command));
+    all.push_back({command.full_name(), command.kind});
     by_robot[command.robot].push_back({'/' + command.name, all.back().kind});
   }
   foxglove_.set_commands(all);

@@ -106,7 +106,7 @@ void FoxgloveHub::set_commands(const std::vector<CommandInfo>& commands) {
   });
   std::vector<foxglove::Service> added;
   for (const CommandInfo& command : commands) {
-    const std::string type = service_type(command.kind);
+    const std::string type = bus::ros_type(command.kind);
     const auto id = service_ids_.try_emplace(command.name + ' ' + type, service_ids_.size() + 1).first->second;
     if (services_.contains(id)) continue;
     added.push_back({.id = id,

@@ -94,7 +94,6 @@ class FoxgloveHub {
   const FoxgloveHooks& hooks_of(Rights rights) const { return rights == Rights::kControl ? hooks_ : looking_; }
   foxglove::ServerInfo server_info(const FoxgloveHooks& hooks) const;
   std::vector<foxglove::Channel> channels() const;
-  const foxglove::Service* service(std::uint32_t id) const;
   std::vector<foxglove::Parameter> parameters(const std::vector<std::string>& names) const;
   void broadcast(const std::string& text);
   void update_wanted(std::uint32_t channel);
@@ -130,7 +129,7 @@ class FoxgloveSession : public Session {
   friend class FoxgloveHub;
   static constexpr std::size_t kMaxSubscriptions = 4096;
 
-  void handle(const foxglove::Request& request);
+  void handle(const std::function<foxglove::Request()>& read);
   void answer(const foxglove::Subscribe& request);
   void answer(const foxglove::Unsubscribe& request);
   void answer(const foxglove::ClientAdvertise& request);

@@ -22,23 +22,19 @@ FoxgloveSession::~FoxgloveSession() {
 }
 
 void FoxgloveSession::on_text(std::string_view text) {
-  try {
-    handle(foxglove::read_text(text));
-  } catch (const foxglove::ProtocolError& error) {
-    send_error(error.what());
-  }
+  handle([&] { return foxglove::read_text(text); });
 }
 
 void FoxgloveSession::on_binary(std::span<const std::byte> bytes) {
+  handle([&] { return foxglove::read_binary(bytes); });
+}
+
+void FoxgloveSession::handle(const std::function<foxglove::Request()>& read) {
   try {
-    handle(foxglove::read_binary(bytes));
+    std::visit([this](const auto& chosen) { answer(chosen); }, read());
   } catch (const foxglove::ProtocolError& error) {
     send_error(error.what());
   }
-}
-
-void FoxgloveSession::handle(const foxglove::Request& request) {
-  std::visit([this](const auto& chosen) { answer(chosen); }, request);
 }
 
 bool FoxgloveSession::subscribes(std::uint32_t channel) const {
@@ -85,8 +81,7 @@ void FoxgloveSession::answer(const foxglove::Unsubscribe& request) {
 }
 
 void FoxgloveSession::answer(const foxglove::ClientAdvertise& request) {
-  if (!hooks_.on_publish)
-    return send_error("this viewer only listens: start it with --publish to let clients publish");
+  if (!hooks_.on_publish) return send_error("this viewer only listens: start it with --publish to let clients publish");
   for (const foxglove::Channel& channel : request.channels) {
     if (channel.schema.encoding != "cdr") {
       send_error("channel '" + channel.topic + "': only the encoding cdr can be published");
@@ -106,8 +101,7 @@ void FoxgloveSession::answer(const foxglove::ClientMessage& request) {
   const auto channel = published_.find(request.channel);
   if (channel == published_.end())
     return send_error("channel " + std::to_string(request.channel) + " is not advertised");
-  const std::string problem =
-      hooks_.on_publish(channel->second.topic, channel->second.schema.name, request.payload);
+  const std::string problem = hooks_.on_publish(channel->second.topic, channel->second.schema.name, request.payload);
   if (!problem.empty()) send_error(problem);
 }
 
@@ -123,13 +117,14 @@ void FoxgloveSession::answer(const foxglove::SetParameters& request) {
   };
   const auto progress = std::make_shared<Progress>();
   for (const foxglove::Parameter& parameter : request.parameters)
-    hooks_.on_set(
-        parameter, [this, alive = std::weak_ptr(alive_), progress, request, parameter](const CommandResult& result) {
-          if (alive.expired()) return;
-          if (result.success) progress->accepted.push_back(parameter);
-          if (!result.success) send_error("parameter '" + parameter.name + "': " + result.message);
-          if (++progress->answers == request.parameters.size()) answer_parameters(progress->accepted, request);
-        });
+    hooks_.on_set(parameter,
+                  [this, alive = std::weak_ptr(alive_), progress, request, parameter](const CommandResult& result) {
+                    if (alive.expired()) return;
+                    if (result.success) progress->accepted.push_back(parameter);
+                    if (!result.success) send_error("parameter '" + parameter.name + "': " + result.message);
+                    if (++progress->answers == request.parameters.size())
+                      answer_parameters(progress->accepted, request);
+                  });
 }
 
 /// What was accepted has its new value here: it comes with a heartbeat, later.
@@ -180,28 +175,27 @@ void FoxgloveSession::answer(const foxglove::ServiceCall& request) {
   const CommandInfo command = known->second.first;
   const auto argument = read_command_request(command.kind, request.encoding, request.payload);
   if (!argument)
-    return fail("'" + command.name + "': the request is not a " + service_type(command.kind) + " in json or cdr");
+    return fail("'" + command.name + "': the request is not a " + bus::ros_type(command.kind) + " in json or cdr");
   hooks_.on_call(command, *argument,
-                      [this, alive = std::weak_ptr(alive_), service = request.service, call = request.call,
-                       encoding = request.encoding](const CommandResult& result) {
-                        if (alive.expired()) return;
-                        outbox_.push_control(binary_frame(foxglove::service_call_response(
-                            service, call, encoding, command_response(encoding, result))));
-                      });
+                 [this, alive = std::weak_ptr(alive_), service = request.service, call = request.call,
+                  encoding = request.encoding](const CommandResult& result) {
+                   if (alive.expired()) return;
+                   outbox_.push_control(binary_frame(
+                       foxglove::service_call_response(service, call, encoding, command_response(encoding, result))));
+                 });
 }
 
 void FoxgloveSession::answer(const foxglove::PlaybackControl& request) {
   knows_playback_ = true;
   if (!hooks_.on_playback) return send_error(kOnlyLooks);
   if (!hub_.played_) return send_error("nothing is being replayed");
-  hooks_.on_playback(request,
-                          [&hub = hub_, this, alive = std::weak_ptr(alive_), request](const CommandResult& result) {
-                            if (result.success) return hub.control_done(request);
-                            if (alive.expired()) return;
-                            send_error(result.message);
-                            const foxglove::PlaybackControl refused{.request_id = request.request_id};
-                            hub.send_playback(&refused);
-                          });
+  hooks_.on_playback(request, [&hub = hub_, this, alive = std::weak_ptr(alive_), request](const CommandResult& result) {
+    if (result.success) return hub.control_done(request);
+    if (alive.expired()) return;
+    send_error(result.message);
+    const foxglove::PlaybackControl refused{.request_id = request.request_id};
+    hub.send_playback(&refused);
+  });
 }
 
 }  // namespace rtd::viewer

@@ -11,18 +11,10 @@
 namespace rtd::viewer::page {
 namespace {
 
-void put(ByteWriter& writer, const Head& head) {
-  writer.put(head.kind);
-  writer.put(head.robot);
-  writer.put(head.map);
-  writer.put(head.count);
-}
-
+/// What every message begins with.
 ByteWriter begin(Kind kind, std::uint8_t robot, std::uint32_t map_id, std::size_t count) {
-  ByteWriter writer;
-  put(writer, {kind, robot, static_cast<std::uint16_t>(std::min<std::uint32_t>(map_id, UINT16_MAX)),
-               static_cast<std::uint32_t>(count)});
-  return writer;
+  return ByteWriter(kind, robot, static_cast<std::uint16_t>(std::min<std::uint32_t>(map_id, UINT16_MAX)),
+                    static_cast<std::uint32_t>(count));
 }
 
 void put(ByteWriter& writer, const Eigen::Vector3f& vector) {
@@ -175,20 +167,6 @@ void put_runs(ByteWriter& writer, std::span<const std::uint8_t> values) {
   writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
 }
 
-Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
-  const std::size_t pixels = std::size_t{image.width} * image.height;
-  constexpr std::size_t kMaxPixels = 1U << 20U;
-  if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMaxPixels ||
-      image.data.size() < pixels)
-    return {};
-  ByteWriter writer = begin(kind, robot, 0, 0);
-  writer.put(seconds(image.header.stamp));
-  writer.put(static_cast<std::uint16_t>(image.width));
-  writer.put(static_cast<std::uint16_t>(image.height));
-  put_runs(writer, {image.data.data(), pixels});
-  return writer.take();
-}
-
 }  // namespace
 
 Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan) {
@@ -209,12 +187,18 @@ Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan) {
   return writer.take();
 }
 
-Bytes mask(std::uint8_t robot, const msg::Image& image) {
-  return runs(Kind::kMask, robot, image);
-}
-
-Bytes people(std::uint8_t robot, const msg::Image& image) {
-  return runs(Kind::kPeople, robot, image);
+Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
+  const std::size_t pixels = std::size_t{image.width} * image.height;
+  constexpr std::size_t kMaxPixels = 1U << 20U;
+  if (image.encoding != "mono8" || image.step != image.width || pixels == 0 || pixels > kMaxPixels ||
+      image.data.size() < pixels)
+    return {};
+  ByteWriter writer = begin(kind, robot, 0, 0);
+  writer.put(seconds(image.header.stamp));
+  writer.put(static_cast<std::uint16_t>(image.width));
+  writer.put(static_cast<std::uint16_t>(image.height));
+  put_runs(writer, {image.data.data(), pixels});
+  return writer.take();
 }
 
 Bytes dense(Kind kind, std::uint8_t robot, std::uint32_t start, std::uint32_t total, const Eigen::Vector3f& origin_m,

@@ -43,14 +43,6 @@ enum class Kind : std::uint8_t {
   kDepth = 17,
 };
 
-/// What every binary message begins with.
-struct Head {
-  Kind kind;
-  std::uint8_t robot;
-  std::uint16_t map;
-  std::uint32_t count;
-};
-
 using KeyframeRef = std::pair<std::uint32_t, const MirroredKeyframe*>;
 
 /// Of keyframes of one map.
@@ -69,10 +61,9 @@ Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vect
 /// `kind`: of the camera's image, or of the picture of its depth.
 Bytes image(std::uint8_t robot, const msg::CompressedImage& image, Kind kind = Kind::kImage);
 Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame);
-/// Runs of equal values. Empty for an image that is not mono8 of a plausible size.
-Bytes mask(std::uint8_t robot, const msg::Image& image);
-/// The same of the detector's person masks.
-Bytes people(std::uint8_t robot, const msg::Image& image);
+/// Runs of equal values, of the filter's mask (kMask) or the detector's person masks (kPeople). Empty for an image that
+/// is not mono8 of a plausible size.
+Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image);
 /// The floor plan: its place, and runs of equal cells. Empty for one of an implausible size.
 Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan);
 /// kind: kDense or kMoving.

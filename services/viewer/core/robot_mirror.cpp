@@ -156,12 +156,12 @@ void RobotMirror::add(const msg::Detection2DArray& detections) {
 }
 
 void RobotMirror::add(const msg::Image& mask) {
-  Bytes bytes = page::mask(index_, mask);
+  Bytes bytes = page::runs(page::Kind::kMask, index_, mask);
   if (!bytes.empty()) keep(masks_, to_ns(mask.header.stamp), shared(std::move(bytes)));
 }
 
 void RobotMirror::add_people(const msg::Image& masks) {
-  Bytes bytes = page::people(index_, masks);
+  Bytes bytes = page::runs(page::Kind::kPeople, index_, masks);
   if (!bytes.empty()) keep(people_, to_ns(masks.header.stamp), shared(std::move(bytes)));
 }
 

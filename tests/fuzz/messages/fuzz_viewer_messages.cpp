@@ -55,7 +55,7 @@ class Clients {
   Clients() {
     foxglove_.add_channel("/a", {"cdr", "a/msg/A", "ros2msg", "uint8 a"});
     foxglove_.add_channel("/b", {"cdr", "a/msg/B", "ros2msg", "uint8 b"});
-    foxglove_.set_commands({{"/slam/reset", ArgumentKind::kNone}, {"/slam/save_map", ArgumentKind::kText}});
+    foxglove_.set_commands({{"/slam/reset", CommandKind::kTrigger}, {"/slam/save_map", CommandKind::kText}});
     foxglove_.set_parameters({{"a", 1.0}});
     foxglove_.set_played(Played{.begin_ns = 0, .end_ns = 1'000'000'000});
     page_.robot("");

@@ -132,7 +132,7 @@ TEST_F(FoxgloveHubTest, a_client_that_floods_and_does_not_read_is_given_up) {
 }
 
 TEST_F(FoxgloveHubTest, commands_are_services) {
-  hub.set_commands({{"/slam/reset", ArgumentKind::kNone}, {"/filter/set_mode", ArgumentKind::kText}});
+  hub.set_commands({{"/slam/reset", CommandKind::kTrigger}, {"/filter/set_mode", CommandKind::kText}});
   auto client = hub.open();
   const auto greeting = take(*client);
   ASSERT_THAT(ops(greeting), ElementsAre("serverInfo", "advertise", "advertiseServices"));
@@ -155,7 +155,7 @@ TEST_F(FoxgloveHubTest, commands_are_services) {
 }
 
 TEST_F(FoxgloveHubTest, a_client_that_only_looks_causes_nothing) {
-  hub.set_commands({{"/slam/save_map", ArgumentKind::kText}});
+  hub.set_commands({{"/slam/save_map", CommandKind::kText}});
   const auto looker = hub.open(foxglove::kSubprotocols[0], Rights::kLook), other = hub.open();
   const auto greeting = take(*looker);
   ASSERT_THAT(ops(greeting), ElementsAre("serverInfo", "advertise")) << "no services";
@@ -166,7 +166,7 @@ TEST_F(FoxgloveHubTest, a_client_that_only_looks_causes_nothing) {
   EXPECT_THAT(ops(take(*looker)), ElementsAre("serviceCallFailure", "status"));
   EXPECT_THAT(calls, IsEmpty());
   take(*other);
-  hub.set_commands({{"/slam/reset", ArgumentKind::kNone}});
+  hub.set_commands({{"/slam/reset", CommandKind::kTrigger}});
   EXPECT_THAT(take(*looker), IsEmpty());
   EXPECT_EQ(take(*other).size(), 2U) << "one is gone, one is new";
 }

@@ -124,21 +124,21 @@ TEST(FoxgloveRequests, nonsense_is_refused_with_its_cause) {
 }
 
 TEST(CommandForms, requests_are_read_as_json_and_as_cdr) {
-  const auto read = [](ArgumentKind kind, const std::string& encoding, const Bytes& bytes) {
+  const auto read = [](CommandKind kind, const std::string& encoding, const Bytes& bytes) {
     return read_command_request(kind, encoding, bytes);
   };
   const auto text_bytes = [](const std::string& text) {
     const auto bytes = std::as_bytes(std::span(text));
     return Bytes(bytes.begin(), bytes.end());
   };
-  EXPECT_EQ(read(ArgumentKind::kNone, "json", text_bytes("{}")), "");
-  EXPECT_EQ(read(ArgumentKind::kBool, "json", text_bytes(R"({"data":true})")), "true");
-  EXPECT_EQ(read(ArgumentKind::kText, "json", text_bytes(R"({"argument":"a.map"})")), "a.map");
-  EXPECT_EQ(read(ArgumentKind::kBool, "cdr", bytes_of({0, 1, 0, 0, 0})), "false");
-  EXPECT_EQ(read(ArgumentKind::kText, "cdr", bytes_of({0, 1, 0, 0, 3, 0, 0, 0, 'h', 'i', 0})), "hi");
-  EXPECT_FALSE(read(ArgumentKind::kText, "cdr", bytes_of({0, 1, 0, 0, 9, 0, 0, 0, 'h', 'i', 0})));
-  EXPECT_FALSE(read(ArgumentKind::kBool, "json", text_bytes(R"({"data":1})")));
-  EXPECT_FALSE(read(ArgumentKind::kText, "ros1", bytes_of({0})));
+  EXPECT_EQ(read(CommandKind::kTrigger, "json", text_bytes("{}")), "");
+  EXPECT_EQ(read(CommandKind::kSetBool, "json", text_bytes(R"({"data":true})")), "true");
+  EXPECT_EQ(read(CommandKind::kText, "json", text_bytes(R"({"argument":"a.map"})")), "a.map");
+  EXPECT_EQ(read(CommandKind::kSetBool, "cdr", bytes_of({0, 1, 0, 0, 0})), "false");
+  EXPECT_EQ(read(CommandKind::kText, "cdr", bytes_of({0, 1, 0, 0, 3, 0, 0, 0, 'h', 'i', 0})), "hi");
+  EXPECT_FALSE(read(CommandKind::kText, "cdr", bytes_of({0, 1, 0, 0, 9, 0, 0, 0, 'h', 'i', 0})));
+  EXPECT_FALSE(read(CommandKind::kSetBool, "json", text_bytes(R"({"data":1})")));
+  EXPECT_FALSE(read(CommandKind::kText, "ros1", bytes_of({0})));
 }
 
 TEST(CommandForms, answers_are_written_in_the_encoding_of_the_request) {

@@ -148,7 +148,7 @@ msg::OccupancyGrid floor_plan() {
 std::string image_messages() {
   const std::array<std::byte, 9> points{};
   return fmt::format("image {}\nfeatures {}\nmask {}\ndense {}\n", hex(page::image(1, sample<msg::CompressedImage>(3))),
-                     hex(page::features(1, features())), hex(page::mask(1, mask())),
+                     hex(page::features(1, features())), hex(page::runs(page::Kind::kMask, 1, mask())),
                      hex(page::dense(page::Kind::kDense, 1, 0, 1, {1, 2, 3}, 0.5F, points))) +
          fmt::format("moving {}\nplan {}\n", hex(page::dense(page::Kind::kMoving, 1, 0, 1, {1, 2, 3}, 0.5F, points)),
                      hex(page::plan(1, floor_plan()))) +
@@ -166,7 +166,7 @@ msg::AtlasState atlas() {
 
 std::string texts() {
   const page::ServiceLine line{sample<msg::ServiceStatus>(4), 12.5};
-  const CommandInfo command{"/slam/reset", ArgumentKind::kNone};
+  const CommandInfo command{"/slam/reset", CommandKind::kTrigger};
   const std::string robots[] = {"", "anna"};
   std::string all;
   for (const std::string& text :
