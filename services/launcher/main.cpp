@@ -20,7 +20,6 @@
 #include "common/service/exit_code.hpp"
 #include "common/service/standard_streams.hpp"
 #include "services/launcher/core/completion/completion.hpp"
-#include "services/launcher/core/run/viewer_use.hpp"
 #include "services/launcher/demo/demo_command.hpp"
 #include "services/launcher/doctor/doctor_command.hpp"
 #include "services/launcher/run/run_command.hpp"
@@ -126,18 +125,15 @@ int run_external_command(const std::string& name, std::vector<std::string> argum
 }
 
 /// `rtd replay --viewer`: starts the viewer where the replay will publish, and replaces the option among the arguments
-/// by what the replay has to do for it. The viewer ends with the replay. Returns why it cannot be started, else "".
-std::string start_viewer(std::vector<std::string>& arguments) {
+/// by what the replay has to do for it. The viewer ends with the replay. Throws service::ConfigError.
+void start_viewer(std::vector<std::string>& arguments) {
   const std::string flag = "--viewer";
   const auto given = std::ranges::find_if(
       arguments, [&](const std::string& argument) { return argument == flag || argument.starts_with(flag + '='); });
-  if (given == arguments.end()) return "";
-  const std::string words = given->size() > flag.size() ? given->substr(flag.size() + 1) : "";
-  const std::optional<ViewerUse> use = parse_viewer_use(words);
-  if (!use) return viewer_use_problem(words);
+  if (given == arguments.end()) return;
+  const ViewerUse use = parse_viewer_use(given->size() > flag.size() ? given->substr(flag.size() + 1) : "");
   arguments.erase(given);
-  const std::string executable = process::find_executable("rtd-viewer");
-  if (executable.empty()) return process::missing_executable("rtd-viewer");
+  const std::string executable = process::require_executable("rtd-viewer");
   CLI::App app;
   app.set_help_flag();
   app.allow_extras();
@@ -147,13 +143,14 @@ std::string start_viewer(std::vector<std::string>& arguments) {
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::ParseError&) {
-    return "";  // the replay says what is wrong
+    return;  // the replay says what is wrong
   }
-  if (use->waits) arguments.emplace_back("--wait-page");
-  if (use->stays) arguments.emplace_back("--hold");
+  if (use.waits) arguments.emplace_back("--wait-page");
+  if (use.stays) arguments.emplace_back("--hold");
   std::vector<std::string> command = service::to_command_line(sources);
   command.insert(command.end(), {"--log-level", "warning", "--open"});
-  return process::start_companion(executable, command);
+  const std::string problem = process::start_companion(executable, command);
+  if (!problem.empty()) throw service::ConfigError(problem);
 }
 
 /// `rtd complete WORD...`: prints the candidates for the last word, for the shells' scripts (deploy/completion).
@@ -279,9 +276,10 @@ int front(int argc, char** argv) {
   const bool named = !arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-';
   if (named && std::ranges::count(kBuiltIn, arguments[0]) == 0) {
     std::vector<std::string> rest(arguments.begin() + 1, arguments.end());
-    const std::string problem = arguments[0] == "replay" ? start_viewer(rest) : "";
-    if (!problem.empty()) std::cerr << "rtd: " << problem << '\n';
-    return problem.empty() ? run_external_command(arguments[0], rest) : service::kUsageOrConfig;
+    return service::report_errors<service::ConfigError>("rtd", std::cerr, [&] {
+      if (arguments[0] == "replay") start_viewer(rest);
+      return run_external_command(arguments[0], rest);
+    });
   }
 
   Requests requests;

@@ -10,6 +10,7 @@ namespace rtd::launcher {
 namespace {
 
 constexpr int kMaxShownPerService = 10;
+constexpr std::size_t kTailLines = 12;
 
 std::string_view second_token(std::string_view line) {
   const std::size_t space = line.find(' ');
@@ -34,11 +35,6 @@ std::string event_of(const std::string& line) {
 
 }  // namespace
 
-void LogTail::add(const std::string& line) {
-  lines_.push_back(line);
-  if (lines_.size() > max_lines_) lines_.pop_front();
-}
-
 LogLevel level_of(std::string_view line) {
   if (line.rfind("rtd-", 0) == 0 || line.rfind("terminate called", 0) == 0) return LogLevel::kError;
   const std::string_view text = strip_color(second_token(line));
@@ -62,7 +58,8 @@ void ServiceLogs::add(const std::string& service, const std::string& printed) {
     log.file->append({io::bytes_of(line), io::bytes_of("\n")});
   } catch (const io::IoError&) {  // a disk that is full may have room again for a later line
   }
-  log.tail.add(line);
+  log.tail.push_back(line);
+  if (log.tail.size() > kTailLines) log.tail.pop_front();
   if (!muted_ && level_of(line) != LogLevel::kInfo) show(service, log, line);
 }
 
@@ -84,7 +81,8 @@ std::vector<std::string> ServiceLogs::reason(const std::string& service) const {
 
 std::vector<std::string> ServiceLogs::tail(const std::string& service) const {
   const auto log = logs_.find(service);
-  return log == logs_.end() ? std::vector<std::string>() : log->second.tail.lines();
+  if (log == logs_.end()) return {};
+  return {log->second.tail.begin(), log->second.tail.end()};
 }
 
 }  // namespace rtd::launcher

@@ -15,18 +15,6 @@
 
 namespace rtd::launcher {
 
-/// The last lines of a log.
-class LogTail {
- public:
-  explicit LogTail(std::size_t max_lines = 12) : max_lines_(max_lines) {}
-  void add(const std::string& line);
-  std::vector<std::string> lines() const { return {lines_.begin(), lines_.end()}; }
-
- private:
-  std::size_t max_lines_;
-  std::deque<std::string> lines_;
-};
-
 enum class LogLevel { kInfo, kWarning, kError };
 
 /// The level of a service's log line: "12:34:56.789 warning slam event=..." or "rtd-slam: why it cannot run".
@@ -53,7 +41,7 @@ class ServiceLogs {
  private:
   struct Log {
     std::optional<io::FileSink> file;
-    LogTail tail;
+    std::deque<std::string> tail;  ///< the last lines
     int shown = 0;
   };
   void show(const std::string& service, Log& log, const std::string& line);

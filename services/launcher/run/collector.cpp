@@ -116,11 +116,6 @@ bool Collector::connected(bool with_filter) const {
          (!with_filter || (features_reader_.matched() > 0 && found("filter")));
 }
 
-std::string Collector::active_services(const Tolerated& tolerated) const {
-  const std::lock_guard lock(mutex_);
-  return builder_.active_services(tolerated);
-}
-
 LiveStatus Collector::live() const {
   const std::lock_guard lock(mutex_);
   LiveStatus status = builder_.live();
@@ -131,36 +126,6 @@ LiveStatus Collector::live() const {
 std::optional<std::string> Collector::take_notice() {
   const std::lock_guard lock(mutex_);
   return builder_.take_notice();
-}
-
-std::vector<std::string> Collector::repeated_notices() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.repeated_notices();
-}
-
-bool Collector::tracked_any() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.tracked_any();
-}
-
-bool Collector::any_frame() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.frames_in() > 0;
-}
-
-std::string Collector::camera_message() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.camera_message();
-}
-
-std::optional<FramePlace> Collector::last_seen() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.last_seen();
-}
-
-std::optional<FramePlace> Collector::last_answered() const {
-  const std::lock_guard lock(mutex_);
-  return builder_.last_answered();
 }
 
 void Collector::close() {

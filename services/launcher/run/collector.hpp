@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -37,19 +38,15 @@ class Collector {
   bool connected(bool with_filter = true) const;
   /// Subscribes to the frames too: a camera that waits for the launcher sends its first one from now on.
   void read_frames();
-  /// As RecordBuilder::active_services.
-  std::string active_services(const Tolerated& tolerated = {}) const;
+  /// What a function of RecordBuilder returns now.
+  auto ask(auto function, const auto&... arguments) const {
+    const std::lock_guard lock(mutex_);
+    return std::invoke(function, builder_, arguments...);
+  }
   /// From the newest heartbeat of a service; empty: none, or none with it.
   std::optional<double> metric_of(const std::string& service, const std::string& metric) const;
   LiveStatus live() const;
   std::optional<std::string> take_notice();
-  std::vector<std::string> repeated_notices() const;
-  bool tracked_any() const;
-  bool any_frame() const;  ///< the camera has given one
-  std::string camera_message() const;
-  /// As those of RecordBuilder.
-  std::optional<FramePlace> last_seen() const;
-  std::optional<FramePlace> last_answered() const;
   /// The run ends: frames of another source than its own no longer count.
   void close();
   /// Writes what was received (frames, counters, samples, features of the first kMaxJudgedFrames frames) into the

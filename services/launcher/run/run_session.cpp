@@ -60,7 +60,7 @@ RunSession::RunSession(const RunSetup& setup, bus::Bus& bus, service::InterruptS
             if (service == "viewer" && line.starts_with("viewer: ")) terminal_.print("rtd: " + (viewer_line_ = line));
           },
           milliseconds(setup.launcher.hung_after_ms)),
-      supervisor_(host_, setup.launcher.supervisor(), [this](const SupervisorEvent& event) { on_event(event); }),
+      supervisor_(host_, setup.launcher, [this](const SupervisorEvent& event) { on_event(event); }),
       own_cpu_before_s_(own_usage().cpu_s) {}
 
 RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
@@ -77,7 +77,7 @@ RunOutcome RunSession::run(const std::vector<ServicePlan>& plans) {
     supervisor_.start(counted(plans[i]), now());
   }
   ServicePlan source = plans.back();
-  source.has_served = [this] { return collector_.any_frame(); };
+  source.has_served = [this] { return collector_.ask(&RecordBuilder::frames_in) > 0; };
   if (!setup_.replay) source.when_restarted = [this] { return continue_camera(); };
   supervise(source);
   terminal_.end_status();
@@ -104,7 +104,7 @@ std::vector<std::string> RunSession::continue_camera() const {
   awaited.emplace_back("launcher");
   std::vector<std::string> arguments = {"--wait-for", fmt::format("none,{}", fmt::join(awaited, ","))};
   const bool again = setup_.pace != "realtime" && !setup_.running_camera;
-  if (const auto last = again ? collector_.last_answered() : collector_.last_seen()) {
+  if (const auto last = collector_.ask(again ? &RecordBuilder::last_answered : &RecordBuilder::last_seen)) {
     arguments.insert(arguments.end(),
                      {"--resume-after", fmt::format("{},{},{}", last->seq, last->stamp_ns, last->published_ns)});
   }
@@ -127,12 +127,12 @@ void RunSession::require_free_domain() {
 }
 
 void RunSession::require_none_active(const Tolerated& tolerated) const {
-  const std::string others = collector_.active_services(tolerated);
+  const std::string others = collector_.ask(&RecordBuilder::active_services, tolerated);
   if (others.empty()) return;
   Tolerated with_detector = tolerated;
   with_detector.detector = true;
   std::string fix = ": stop them";
-  if (collector_.active_services(with_detector).empty()) {
+  if (collector_.ask(&RecordBuilder::active_services, with_detector).empty()) {
     fix = ": use its boxes with --detector remote, stop it";
   } else if (tolerated.harmless_replay && others.starts_with("replay")) {
     fix =
@@ -283,7 +283,8 @@ run_record::RunRecord RunSession::record() const {
   record.interrupted = supervisor_.outcome() == RunOutcome::kInterrupted;
   collector_.fill(record);
   record.events = events_;
-  for (std::string& notice : collector_.repeated_notices()) record.events.push_back(std::move(notice));
+  for (std::string& notice : collector_.ask(&RecordBuilder::repeated_notices))
+    record.events.push_back(std::move(notice));
   record.duration_s = span_s(record.frames);
   record.processes = usage_.usage();
   record.processes["launcher"] = own_usage();

@@ -35,8 +35,8 @@ class RunSession {
   /// What was observed; call it after run().
   run_record::RunRecord record() const;
   /// At the end the first piece that the source left out; may be empty.
-  std::string camera_message() const { return collector_.camera_message(); }
-  bool tracked_any() const { return collector_.tracked_any(); }
+  std::string camera_message() const { return collector_.ask(&RecordBuilder::camera_message); }
+  bool tracked_any() const { return collector_.ask(&RecordBuilder::tracked_any); }
   /// Slam was restarted, each time with the map of a checkpoint: its poses before and after are in one world.
   bool slam_kept_its_world() const { return slam_restarts_ > 0 && slam_worlds_lost_ == 0; }
   bool slam_lost_its_world() const { return slam_worlds_lost_ > 0; }

@@ -18,7 +18,7 @@
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
 #include "common/service/model_locator.hpp"
-#include "common/service/pacer.hpp"
+#include "common/service/patience.hpp"
 
 namespace rtd::launcher {
 namespace fs = std::filesystem;
@@ -43,13 +43,6 @@ void choose_pace(RunSetup& setup) {
   const service::Pace pace = service::parse_pace(setup.pace.empty() ? usual_pace(setup) : setup.pace);
   setup.pace = service::to_string(pace);
   setup.launcher.hung_after_ms = service::patience_of(pace).silent_ms;
-}
-
-void choose_viewer(RunSetup& setup) {
-  if (setup.viewer.empty()) return;
-  const std::optional<ViewerUse> use = parse_viewer_use(setup.viewer);
-  if (!use) throw ConfigError(viewer_use_problem(setup.viewer));
-  setup.viewer_use = *use;
 }
 
 /// The launcher reads its own sections; the services check theirs when they start.
@@ -289,7 +282,7 @@ RunSetup prepare_run(const RunOptions& options) {
   RunSetup setup(options);
   setup.source = camera::complete_uri(setup.source);
   choose_pace(setup);
-  choose_viewer(setup);
+  if (!setup.viewer.empty()) setup.viewer_use = parse_viewer_use(setup.viewer);
   load_config(setup);
   choose_vendors(setup);
   setup.replay = choose_replay(setup, setup.bus_options.robot);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -12,18 +11,13 @@
 #include "common/msg/filter_modes.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/bus_config.hpp"
-#include "common/service/patience.hpp"
 #include "common/service/run_settings.hpp"
 #include "services/launcher/core/run/supervisor.hpp"
-#include "services/launcher/core/run/viewer_use.hpp"
 
 namespace rtd::launcher {
 
 /// Section `launcher` of the configuration.
-struct LauncherConfig {
-  int max_restarts = 5;
-  int first_backoff_ms = 200;
-  int hung_after_ms = service::patience_of(service::Pace::kRealtime).silent_ms;  ///< of the pace, see load_config()
+struct LauncherConfig : SupervisorOptions {  ///< hung_after_ms: that of the pace, see load_config()
   int domain_check_ms = 500;
   int connect_timeout_ms = 15000;
   int interrupt_grace_ms = 1200;
@@ -47,13 +41,6 @@ struct LauncherConfig {
                  "from the end of the source to the forced end: slam writes its map");
     binder.field("samples", samples, {1, 100}, "frames kept for the report");
   }
-  SupervisorOptions supervisor() const {
-    SupervisorOptions options;
-    options.max_restarts_in_row = max_restarts;
-    options.first_backoff = std::chrono::milliseconds(first_backoff_ms);
-    options.hung_after = std::chrono::milliseconds(hung_after_ms);
-    return options;
-  }
 };
 
 /// What `rtd run` knows of the settings of services: they are options of its own, which it forwards.
@@ -73,6 +60,17 @@ struct ServiceSettings {
   /// As parts of the services' sections.
   void bind(service::ConfigBinder& binder);
 };
+
+/// How a run or a replay goes together with the page that shows it.
+struct ViewerUse {
+  bool shown = false;
+  bool waits = true;  ///< a recording is played when the first page is open
+  bool stays = true;  ///< until Ctrl-C, after the run
+};
+
+/// What follows `--viewer=`, with commas: "stay" or "true" (what an option without a value has), "now": does not wait;
+/// "exit": does not stay. Throws service::ConfigError that says what to write.
+ViewerUse parse_viewer_use(const std::string& words);
 
 /// The command line of `rtd run`.
 struct RunOptions {

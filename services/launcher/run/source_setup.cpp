@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "common/bus/frame_topics.hpp"
 #include "common/bus/robot.hpp"
@@ -89,6 +90,23 @@ std::vector<std::string> sensor_topics(const RunSetup& setup) {
 }
 
 }  // namespace
+
+ViewerUse parse_viewer_use(const std::string& words) {
+  ViewerUse use{.shown = true};
+  std::istringstream rest(words);
+  for (std::string word; std::getline(rest, word, ',');) {
+    if (word == "now") {
+      use.waits = false;
+    } else if (word == "exit") {
+      use.stays = false;
+    } else if (word != "stay" && word != "true") {
+      throw ConfigError("--viewer=" + words +
+                        ": write --viewer (a recording waits for the first page, the page stays until Ctrl-C), "
+                        "--viewer=now (no wait), --viewer=exit (the page ends with the run) or --viewer=now,exit");
+    }
+  }
+  return use;
+}
 
 const char* usual_pace(const RunSetup& setup) {
   if (setup.detector == "remote") return "realtime";

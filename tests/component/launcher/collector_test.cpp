@@ -83,7 +83,8 @@ TEST_F(CollectorTest, keeps_the_masks_of_people_in_its_pictures_when_it_is_to) {
   collector.read_frames();
   auto masks = bus_->writer(bus::topics::kPersonMasks);
   publish(0);
-  for (int i = 0; i < 500 && !collector.any_frame(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int i = 0; i < 500 && collector.ask(&RecordBuilder::frames_in) == 0; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
   run_record::RunRecord record;
   for (int i = 0; i < 500 && (record.samples.empty() || record.samples[0].masks.empty()); ++i) {
     msg::Image people;  // of the frame's stamp, 0

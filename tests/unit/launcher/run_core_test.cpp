@@ -43,10 +43,15 @@ TEST(line_splitter, bounds_a_line_without_end) {
   EXPECT_EQ(lines[0].size() + lines[1].size() + lines[2].size(), 10000U);
 }
 
-TEST(log_tail, keeps_the_last_lines) {
-  LogTail tail(2);
-  for (const char* line : {"a", "b", "c"}) tail.add(line);
-  EXPECT_THAT(tail.lines(), ElementsAre("b", "c"));
+TEST(service_logs, keep_the_last_lines) {
+  std::ostringstream out;
+  Terminal terminal(out, {});
+  ServiceLogs logs("/nowhere", terminal);
+  for (int line = 1; line <= 20; ++line) logs.add("slam", std::to_string(line));
+  const std::vector<std::string> tail = logs.tail("slam");
+  ASSERT_EQ(tail.size(), 12U);
+  EXPECT_EQ(tail.front(), "9");
+  EXPECT_EQ(tail.back(), "20");
 }
 
 TEST(log_level, reads_the_format_of_our_services) {

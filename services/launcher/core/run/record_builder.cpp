@@ -12,6 +12,7 @@
 
 #include "common/io/text.hpp"
 #include "common/service/metric_names.hpp"
+#include "common/vision/samples.hpp"
 
 namespace rtd::launcher {
 namespace {
@@ -51,9 +52,7 @@ double median_latency_ms(const std::deque<msg::TrackingResult>& results) {
   for (const msg::TrackingResult& r : results) {
     latencies_ms.push_back(static_cast<double>(r.finished_ns - r.published_ns) / kNsPerMs);
   }
-  const auto middle = latencies_ms.begin() + static_cast<std::ptrdiff_t>(latencies_ms.size() / 2);
-  std::nth_element(latencies_ms.begin(), middle, latencies_ms.end());
-  return *middle;
+  return vision::median(std::move(latencies_ms));
 }
 
 double frames_per_second(const std::deque<msg::TrackingResult>& results) {

@@ -12,6 +12,8 @@ namespace {
 constexpr int kExitUsageOrConfig = 2, kExitAlreadyRuns = 4;
 constexpr int kMostPatience = 10;               // times as long for one that gets no processor
 constexpr Supervisor::Clock kStoodStill{1000};  // update() is called many times in it
+constexpr Supervisor::Clock kMostBackoff{2000};
+constexpr Supervisor::Clock kHealthyAfter{5000};  // a service that lived this long starts a new row, at once
 
 /// "1st", "2nd", "3rd", "4th", ..., "11th".
 std::string ordinal(int number) {
@@ -21,9 +23,9 @@ std::string ordinal(int number) {
 }
 
 Supervisor::Clock backoff(const SupervisorOptions& options, int deaths_in_row) {
-  Supervisor::Clock pause = options.first_backoff;
-  for (int i = 1; i < deaths_in_row && pause < options.max_backoff; ++i) pause *= 2;
-  return std::min(pause, options.max_backoff);
+  Supervisor::Clock pause(options.first_backoff_ms);
+  for (int i = 1; i < deaths_in_row && pause < kMostBackoff; ++i) pause *= 2;
+  return std::min(pause, kMostBackoff);
 }
 
 }  // namespace
@@ -83,12 +85,12 @@ bool Supervisor::hangs(Child& child, Clock now) {
     child.last_sign = now;
     child.waited.reset();
   }
-  const Clock silent = now - child.last_sign, begin = options_.hung_after / 2;
-  if (options_.hung_after <= Clock(0) || signs == 0 || silent < begin) return false;
+  const Clock silent = now - child.last_sign, hung_after(options_.hung_after_ms), begin = hung_after / 2;
+  if (hung_after <= Clock(0) || signs == 0 || silent < begin) return false;
   if (!child.waited) child.waited = host_.waited_for_processor(child.process);
-  if (silent < options_.hung_after) return false;
+  if (silent < hung_after) return false;
   const Clock waited = host_.waited_for_processor(child.process) - *child.waited;
-  return silent >= kMostPatience * options_.hung_after || 2 * waited < silent - begin;
+  return silent >= kMostPatience * hung_after || 2 * waited < silent - begin;
 }
 
 void Supervisor::stop(Clock now, Clock grace, RunOutcome why) {
@@ -189,7 +191,7 @@ void Supervisor::on_exit(Child& child, const process::ProcessExit& exit, Clock n
 }
 
 void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock now) {
-  const std::string hung = "hung for " + std::to_string(options_.hung_after.count() / 1000) + " s and was killed";
+  const std::string hung = "hung for " + std::to_string(options_.hung_after_ms / 1000) + " s and was killed";
   const std::string how = child.killed ? hung : "died: " + describe(exit), what = child.plan.name + ' ' + how;
   const bool gave_up = exit.signal == 0 && !child.killed;
   if (child.plan.role == ServiceRole::kSource && (gave_up || !child.plan.when_restarted)) {
@@ -200,9 +202,9 @@ void Supervisor::on_death(Child& child, const process::ProcessExit& exit, Clock 
     report(SupervisorEvent::Kind::kGivenUp, child, what + " before its first frame: not started again", exit, how);
     return decide(RunOutcome::kFailed);
   }
-  const bool healthy = now - child.started >= options_.healthy_after;
+  const bool healthy = now - child.started >= kHealthyAfter;
   child.deaths_in_row = healthy ? 1 : child.deaths_in_row + 1;
-  if (child.deaths_in_row > options_.max_restarts_in_row) {
+  if (child.deaths_in_row > options_.max_restarts) {
     const bool optional = child.plan.role == ServiceRole::kOptional;
     report(SupervisorEvent::Kind::kGivenUp, child,
            what + ", " + std::to_string(child.deaths_in_row) + " times in a row: given up" +

@@ -39,12 +39,10 @@ struct ServicePlan {
 };
 
 struct SupervisorOptions {
-  int max_restarts_in_row = 5;                   ///< deaths in a row before a service is given up
-  std::chrono::milliseconds first_backoff{200};  ///< pause before the restart of one that died young, doubled
-  std::chrono::milliseconds max_backoff{2000};
-  std::chrono::milliseconds healthy_after{5000};  ///< a service that lived this long starts a new row, at once
+  int max_restarts = 5;        ///< deaths in a row before a service is given up
+  int first_backoff_ms = 200;  ///< pause before the restart of one that died young, doubled
   /// Without a sign of life after the first: killed. Ten times as long for one that gets no processor; 0 = never.
-  std::chrono::milliseconds hung_after{3000};
+  int hung_after_ms = 3000;
 };
 
 enum class RunOutcome {
