@@ -311,7 +311,7 @@ void add_benchmark_command(CLI::App& app, ExperimentOptions& options) {
 int run_experiment(ExperimentOptions options) {
   service::outlive_readers();
   if (options.out_dir.empty()) options.out_dir = "rtd_benchmark_" + options.dataset;
-  return guarded(command_of(options).c_str(), std::cerr, [&] { return measure(options); });
+  return guarded(command_of(options), std::cerr, [&] { return measure(options); });
 }
 
 }  // namespace rtd::eval

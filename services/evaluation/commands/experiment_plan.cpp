@@ -14,7 +14,7 @@
 #include "common/run_record/run_record.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
-#include "services/evaluation/core/datasets/openloris.hpp"
+#include "services/evaluation/core/datasets/dataset.hpp"
 
 namespace rtd::eval {
 namespace fs = std::filesystem;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <ostream>
 
+#include "common/io/atomic_file.hpp"
 #include "services/evaluation/commands/guarded.hpp"
 #include "services/evaluation/core/report/report.hpp"
 
@@ -45,7 +46,7 @@ int run_compare(const CompareOptions& options, std::ostream& out, std::ostream& 
       choose_trajectory(runs.back().run, folder);
       link_from(options.page, folder, runs.back().run);
     }
-    write_file(options.page, comparison_html(runs));
+    io::write_file(options.page, comparison_html(runs));
     out << comparison_text(runs) << std::flush;
     return service::kOk;
   });

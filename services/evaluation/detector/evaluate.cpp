@@ -77,38 +77,28 @@ class LabelFolder {
  public:
   /// `format`: yolo (.txt), voc (.xml) or auto (the format in the folder). Throws service::ConfigError when the folder
   /// is missing, or when auto finds both formats or none.
-  LabelFolder(const std::string& folder, const std::string& format);
+  LabelFolder(const std::string& folder, const std::string& format) : folder_(folder), format_(format) {
+    require_folder(folder, "--labels");
+    if (format == "auto") format_ = detect_format(folder);
+  }
 
   const std::string& format() const { return format_; }
   /// Whether the image has a label file; without one it has no objects.
-  bool has(const fs::path& image) const;
-  ImageLabels read(const fs::path& image, ImageSize size, const std::vector<std::string>& class_names) const;
+  bool has(const fs::path& image) const { return !file_of(image).empty(); }
+  ImageLabels read(const fs::path& image, ImageSize size, const std::vector<std::string>& class_names) const {
+    const fs::path path = file_of(image);
+    if (path.empty()) return {};
+    const LabelFile text{path.filename().string(), io::try_read_file(path, io::kLabels).value_or("")};
+    return format_ == "yolo" ? parse_yolo_labels(text, size, class_names) : parse_voc_labels(text, size);
+  }
 
  private:
-  fs::path file_of(const fs::path& image) const;
+  fs::path file_of(const fs::path& image) const {
+    return partner_of(image, folder_, {format_ == "yolo" ? ".txt" : ".xml"});
+  }
+
   std::string folder_, format_;
 };
-
-LabelFolder::LabelFolder(const std::string& folder, const std::string& format) : folder_(folder), format_(format) {
-  require_folder(folder, "--labels");
-  if (format == "auto") format_ = detect_format(folder);
-}
-
-bool LabelFolder::has(const fs::path& image) const {
-  return !file_of(image).empty();
-}
-
-ImageLabels LabelFolder::read(const fs::path& image, ImageSize size,
-                              const std::vector<std::string>& class_names) const {
-  const fs::path path = file_of(image);
-  if (path.empty()) return {};
-  const LabelFile text{path.filename().string(), io::try_read_file(path, io::kLabels).value_or("")};
-  return format_ == "yolo" ? parse_yolo_labels(text, size, class_names) : parse_voc_labels(text, size);
-}
-
-fs::path LabelFolder::file_of(const fs::path& image) const {
-  return partner_of(image, folder_, {format_ == "yolo" ? ".txt" : ".xml"});
-}
 
 std::string level_of(const std::string& class_name) {
   static const vision::MotionLevels levels;

@@ -10,6 +10,7 @@
 #include "common/io/text.hpp"
 #include "common/service/config.hpp"
 #include "common/service/model_locator.hpp"
+#include "common/vision/samples.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -76,11 +77,7 @@ void ModelUnderTest::take_time(const cv::Mat& image) {
 
 ModelFacts ModelUnderTest::facts() const {
   ModelFacts facts = facts_;
-  std::vector<double> ms = ms_;
-  if (ms.empty()) return facts;
-  const auto middle = ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2);
-  std::nth_element(ms.begin(), middle, ms.end());
-  facts.median_ms = *middle;
+  facts.median_ms = vision::median(ms_);
   return facts;
 }
 

@@ -26,7 +26,10 @@ class Report : public testing::Test {
     record_.samples = {testing_support::fabricated_sample(3), testing_support::fabricated_sample(50)};
   }
 
-  nlohmann::ordered_json json() const { return report_json(record_, summarize_run(record_)); }
+  /// As it is printed.
+  nlohmann::ordered_json json() const {
+    return nlohmann::ordered_json::parse(report_json(record_, summarize_run(record_)).dump());
+  }
   std::string page() const { return report_html(record_, summarize_run(record_)); }
   /// What the page shows.
   std::string shown() const { return shown(page()); }

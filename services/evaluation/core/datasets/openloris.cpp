@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/datasets/openloris.hpp"
+#include "services/evaluation/core/datasets/dataset.hpp"
 
 #include <opencv2/core.hpp>
 #include <optional>

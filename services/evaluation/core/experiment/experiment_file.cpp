@@ -31,11 +31,9 @@ ExperimentRun run_from(const nlohmann::json& json) {
           json.at("failure"), json.at("figures"), json.at("trajectory")};
 }
 
-/// Unknown values are null.
+/// Unknown values are null when printed.
 Json spread_json(const Spread& spread) {
-  return {{"median", number_or_null(spread.median)},
-          {"min", number_or_null(spread.min)},
-          {"max", number_or_null(spread.max)}};
+  return {{"median", spread.median}, {"min", spread.min}, {"max", spread.max}};
 }
 
 Json row_json(const ExperimentRow& row) {

@@ -88,11 +88,7 @@ Json text_or_null(const std::string& text) {
 }
 
 Json times_json(const TimeSummary& t) {
-  return {{"p50", number_or_null(t.p50)},
-          {"p99", number_or_null(t.p99)},
-          {"max", number_or_null(t.max)},
-          {"mean", number_or_null(t.mean)},
-          {"count", t.count}};
+  return {{"p50", t.p50}, {"p99", t.p99}, {"max", t.max}, {"mean", t.mean}, {"count", t.count}};
 }
 
 Json stages_json(const RunSummary& summary) {
@@ -103,19 +99,19 @@ Json stages_json(const RunSummary& summary) {
 
 void add_accuracy(const RunSummary& summary, Json& report) {
   const Evaluation none, &e = summary.final_trajectory ? *summary.final_trajectory : none;
-  report["ate_rmse_m"] = number_or_null(e.ate.error_m.rmse);
+  report["ate_rmse_m"] = e.ate.error_m.rmse;
   report["ate_poses"] = e.ate.error_m.count;
-  report["rpe_trans_rmse_m"] = number_or_null(e.rpe_per_second.translation_m.rmse);
-  report["rpe_rot_rmse_deg"] = number_or_null(e.rpe_per_second.rotation_rad.rmse * kRadToDeg);
+  report["rpe_trans_rmse_m"] = e.rpe_per_second.translation_m.rmse;
+  report["rpe_rot_rmse_deg"] = e.rpe_per_second.rotation_rad.rmse * kRadToDeg;
   const auto& online = summary.online_trajectory;
-  report["ate_online_rmse_m"] = online ? number_or_null(online->ate.error_m.rmse) : Json(nullptr);
+  report["ate_online_rmse_m"] = online ? Json(online->ate.error_m.rmse) : Json(nullptr);
 }
 
 void add_processes(const Run& run, Json& report) {
   report["cpu_s"] = report["peak_rss_mb"] = report["restarts"] = Json::object();
   for (const auto& [name, usage] : run.processes) {
-    report["cpu_s"][name] = number_or_null(usage.cpu_s);
-    report["peak_rss_mb"][name] = number_or_null(usage.peak_rss_mb);
+    report["cpu_s"][name] = usage.cpu_s;
+    report["peak_rss_mb"][name] = usage.peak_rss_mb;
     report["restarts"][name] = usage.restarts;
   }
   report["deaths"] = run_record::deaths(run);
@@ -127,18 +123,15 @@ Json lost_json(const RunSummary& summary) {
     spans.push_back({{"first_seq", span.first_seq},
                      {"last_seq", span.last_seq},
                      {"frames", span.frames()},
-                     {"start_s", number_or_null(span.start_s)}});
+                     {"start_s", span.start_s}});
   }
   return spans;
 }
 
 Json quality_json(const RemovalQuality& quality) {
-  return {{"precision", number_or_null(quality.precision())},
-          {"recall", number_or_null(quality.recall())},
-          {"removed_rightly", quality.removed_rightly},
-          {"removed_wrongly", quality.removed_wrongly},
-          {"kept_rightly", quality.kept_rightly},
-          {"kept_wrongly", quality.kept_wrongly}};
+  return {{"precision", quality.precision()},           {"recall", quality.recall()},
+          {"removed_rightly", quality.removed_rightly}, {"removed_wrongly", quality.removed_wrongly},
+          {"kept_rightly", quality.kept_rightly},       {"kept_wrongly", quality.kept_wrongly}};
 }
 
 Json integrity_json(const RunSummary& summary) {
@@ -244,14 +237,10 @@ std::string comparison_text(const std::vector<ComparedRun>& runs) {
 RunSummary write_report(const Run& run, const std::filesystem::path& folder) {
   RunSummary summary = summarize_run(run);
   const std::string json = service::json_text(report_json(run, summary));
-  write_file(folder / "report.json", json + "\n");
-  write_file(folder / kReportPage, report_html(run, summary));
-  write_file(folder / kMapPage, map_page::html(map_page_of(run, summary)));
+  io::write_file(folder / "report.json", json + "\n");
+  io::write_file(folder / kReportPage, report_html(run, summary));
+  io::write_file(folder / kMapPage, map_page::html(map_page_of(run, summary)));
   return summary;
-}
-
-void write_file(const std::filesystem::path& path, const std::string& content) {
-  io::write_file(path, content);
 }
 
 Json report_json(const Run& run, const RunSummary& summary) {
@@ -268,15 +257,14 @@ Json report_json(const Run& run, const RunSummary& summary) {
   report["frames_used"] = summary.frames.used;
   report["frames_tracked"] = summary.frames.with_pose;
   report["frames_dropped"] = run.frames_dropped;
-  report["coverage"] = number_or_null(summary.coverage);
+  report["coverage"] = summary.coverage;
   add_accuracy(summary, report);
   report["latency_ms"] = times_json(summary.latency_ms);
   report["stage_ms"] = stages_json(summary);
   add_processes(run, report);
-  report["duration_s"] = number_or_null(run.duration_s);
-  report["frames_per_s"] = number_or_null(summary.fps);
-  report["features"] = {{"kept_mean", number_or_null(summary.kept_mean)},
-                        {"removed_mean", number_or_null(summary.removed_mean)}};
+  report["duration_s"] = run.duration_s;
+  report["frames_per_s"] = summary.fps;
+  report["features"] = {{"kept_mean", summary.kept_mean}, {"removed_mean", summary.removed_mean}};
   report["removal"] = removal_json(run);
   report["integrity"] = integrity_json(summary);
   report["map"] = {{"keyframes", summary.keyframes}, {"landmarks", summary.landmarks}};
@@ -285,17 +273,12 @@ Json report_json(const Run& run, const RunSummary& summary) {
                              : Json({{"path", run.static_map_path}, {"points", run.static_map_points}});
   report["lost_spans"] = lost_json(summary);
   report["depth"] =
-      run.depth_median_m > 0
-          ? Json({{"median_m", number_or_null(run.depth_median_m)}, {"holes", number_or_null(run.depth_holes)}})
-          : Json(nullptr);
-  report["drops"] = Json::object();
-  for (const auto& [place, count] : run.drops) report["drops"][place] = number_or_null(count);
-  report["left_out"] = Json::object();
-  for (const auto& [reason, count] : run.left_out) report["left_out"][reason] = number_or_null(count);
+      run.depth_median_m > 0 ? Json({{"median_m", run.depth_median_m}, {"holes", run.depth_holes}}) : Json(nullptr);
+  report["drops"] = run.drops;
+  report["left_out"] = run.left_out;
   report["clocks"] = Json::object();
   for (const run_record::HostClock& host : run.clocks)
-    report["clocks"][host.service] = {{"ahead_ms", number_or_null(host.offset_ms)},
-                                      {"round_trip_ms", number_or_null(host.round_trip_ms)}};
+    report["clocks"][host.service] = {{"ahead_ms", host.offset_ms}, {"round_trip_ms", host.round_trip_ms}};
   report["events"] = run.events;
   report["notes"] = summary.notes;
   report["evaluation"] = summary.final_trajectory ? to_json(*summary.final_trajectory) : Json(nullptr);

@@ -38,7 +38,8 @@ void judge_run(Run& run, const std::function<bool()>& go_on);
 /// When slam left no trajectory.txt, the run is judged by the poses as they were published; that becomes an event.
 void choose_trajectory(Run& run, const std::string& folder);
 
-/// The content of report.json (keys: docs/evaluation.md). Every key is always there; what is unknown is null.
+/// The content of report.json (keys: docs/evaluation.md). Every key is always there; what is unknown is null when
+/// printed.
 nlohmann::ordered_json report_json(const Run& run, const RunSummary& summary);
 
 /// The report page of one run: page.html with everything inside, no references to the outside.
@@ -63,8 +64,5 @@ std::string comparison_html(const std::vector<ComparedRun>& runs);
 
 /// ATE and coverage of the runs, a line each, for the terminal.
 std::string comparison_text(const std::vector<ComparedRun>& runs);
-
-/// Throws std::runtime_error naming the file when it cannot be written.
-void write_file(const std::filesystem::path& path, const std::string& content);
 
 }  // namespace rtd::eval

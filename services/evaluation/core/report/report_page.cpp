@@ -140,8 +140,8 @@ constexpr std::size_t kMostColumns = 700;  // more values are averaged: a chart 
 constexpr std::size_t kMostPoses = 2000, kMostLatencies = 6000;
 
 /// Tenths of a millimetre or millisecond: digits that no chart shows would double the page.
-Json rounded(double value) {
-  return std::isfinite(value) ? Json(std::round(value * 1e4) / 1e4) : Json(nullptr);
+double rounded(double value) {
+  return std::round(value * 1e4) / 1e4;
 }
 
 Json rounded(const Eigen::Vector3d& point_m) {
@@ -175,13 +175,12 @@ Json path_json(const Trajectory& poses, const RunTime& time) {
 
 Json path_json(const AteResult& ate, const RunTime& time) {
   Json path = {{"t", Json::array()}, {"p", Json::array()}, {"e", Json::array()}};
-  path["rmse"] = number_or_null(ate.error_m.rmse);
-  path["max"] = number_or_null(ate.error_m.max);
+  path["rmse"] = ate.error_m.rmse;
+  path["max"] = ate.error_m.max;
   for (std::size_t i = 0; i < ate.points.size(); i += ate.points.size() / kMostPoses + 1) {
     path["t"].push_back(rounded(time.since_start_s(ate.points[i].stamp_ns)));
     path["p"].push_back(rounded(ate.points[i].estimate_m));
-    path["e"].push_back(std::isfinite(ate.points[i].error_m) ? Json(std::round(ate.points[i].error_m * 1e6) / 1e6)
-                                                             : Json(nullptr));
+    path["e"].push_back(std::round(ate.points[i].error_m * 1e6) / 1e6);
   }
   return path;
 }

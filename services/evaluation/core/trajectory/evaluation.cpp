@@ -181,20 +181,17 @@ Coverage measure_coverage(const Trajectory& estimate, const Trajectory& groundtr
 
 using Json = nlohmann::ordered_json;
 
-Json alignment_json(const Alignment& alignment) {
-  const Eigen::Quaterniond q(alignment.T_groundtruth_estimate.linear());
-  const Eigen::Vector3d t = alignment.T_groundtruth_estimate.translation();
-  return {{"translation_m", {t.x(), t.y(), t.z()}},
-          {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}},
-          {"scale", alignment.scale},
-          {"unique", alignment.unique}};
+Json pose_json(const Eigen::Isometry3d& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d t = pose.translation();
+  return {{"translation_m", {t.x(), t.y(), t.z()}}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-Json offset_json(const std::optional<BodyOffset>& offset) {
-  if (!offset) return nullptr;
-  const Eigen::Quaterniond q(offset->T_body_camera.linear());
-  const Eigen::Vector3d t = offset->T_body_camera.translation();
-  return {{"translation_m", {t.x(), t.y(), t.z()}}, {"rotation_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+Json alignment_json(const Alignment& alignment) {
+  Json json = pose_json(alignment.T_groundtruth_estimate);
+  json["scale"] = alignment.scale;
+  json["unique"] = alignment.unique;
+  return json;
 }
 
 Json rpe_json(const RpeResult& rpe) {
@@ -310,17 +307,13 @@ Json to_json(const Evaluation& e) {
           {"groundtruth_poses", e.groundtruth_poses},
           {"ate_m", to_json(e.ate.error_m)},
           {"alignment", alignment_json(e.ate.alignment)},
-          {"body_offset", offset_json(e.offset)},
+          {"body_offset", e.offset ? pose_json(e.offset->T_body_camera) : Json(nullptr)},
           {"rpe",
            {{"per_second", rpe_json(e.rpe_per_second)},
             {"per_frame", rpe_json(e.rpe_per_frame)},
             {"per_metre", rpe_json(e.rpe_per_metre)}}},
           {"drift", to_json(e.drift)},
           {"coverage", coverage_json(e.coverage)}};
-}
-
-nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
 }  // namespace rtd::eval

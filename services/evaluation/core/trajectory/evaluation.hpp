@@ -91,7 +91,4 @@ nlohmann::ordered_json to_json(const Statistics& statistics, double factor = 1);
 /// Machine-readable form of an evaluation; keys in docs/evaluation.md. Metres, degrees, seconds.
 nlohmann::ordered_json to_json(const Evaluation& evaluation);
 
-/// The number, null when it is not finite: JSON knows no other way to say so.
-nlohmann::ordered_json number_or_null(double value);
-
 }  // namespace rtd::eval

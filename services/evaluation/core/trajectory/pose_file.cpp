@@ -14,7 +14,7 @@
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/open.hpp"
 #include "common/recordings/parts.hpp"
-#include "services/evaluation/core/trajectory/recorded_poses.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::eval {
 namespace {
@@ -86,31 +86,14 @@ PoseFile read_text_file(const fs::path& path, const MissingStamps& given) {
   return file;
 }
 
-PoseFile read_results_file(recordings::Reader& recording, const std::string& topic) {
-  RecordedResults recorded = read_recorded_results(recording, topic);
-  PoseFile file;
-  file.poses = measured_poses(recorded.published);
-  file.damages = std::move(recorded.damages);
-  if (file.poses.empty()) throw TrajectoryError(recording.name() + ": topic " + topic + " has no measured pose");
-  file.published = std::move(recorded.published);
-  return file;
-}
-
 }  // namespace
 
 PoseFile read_pose_file(const std::string& argument, const MissingStamps& stamps) {
   const PoseArgument wanted = parse(argument);
   std::error_code none;
   const bool exists = fs::exists(wanted.file, none);
-  if (exists && is_recording(wanted.file)) {
-    const auto reader = recordings::open_reader(wanted.file);
-    if (const auto results = topic_of_results(*reader, wanted.choice)) return read_results_file(*reader, *results);
-    RecordedPoses recorded = read_recorded_poses(*reader, wanted.choice);
-    PoseFile file;
-    file.poses = std::move(recorded.poses);
-    file.damages = std::move(recorded.damages);
-    return file;
-  }
+  if (exists && is_recording(wanted.file))
+    return read_recorded_poses(*recordings::open_reader(wanted.file), wanted.choice);
   if (wanted.chosen && exists)
     throw TrajectoryError(argument + ": topic and child are for recordings (bag, MCAP, .db3), the file is none");
   return read_text_file(wanted.file, stamps);

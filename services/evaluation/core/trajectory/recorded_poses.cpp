@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/evaluation/core/trajectory/recorded_poses.hpp"
+#include "services/evaluation/core/trajectory/pose_file.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -8,6 +8,7 @@
 
 #include "common/msg/ros.hpp"
 #include "common/msg/tracking.hpp"
+#include "common/recordings/reader.hpp"
 #include "common/ros_codec/wire.hpp"
 
 namespace rtd::msg {
@@ -91,18 +92,14 @@ class PoseReader {
  public:
   PoseReader(recordings::Reader& recording, const PoseChoice& choice) : recording_(recording), choice_(choice) {}
 
-  RecordedPoses run() {
-    const RecordedTopic& topic = choose();
-    const Decode decode = is_tf(topic) ? from_tf : pose_types().at(topic.type);
-    std::map<std::string, std::vector<FramedPose>> by_child = read(topic.name, decode);
-    const bool framed = is_tf(topic) || !choice_.child.empty();
-    result_.topic = topic.name;
-    if (framed) result_.child = choose_child(by_child, topic.name);
-    for (auto& [child, poses] : by_child) {
-      if (!framed || child == result_.child) add(poses, topic.name);
+  PoseFile run() {
+    const RecordedTopic* const results = recordings::topic_named(recording_, choice_.topic);
+    if (results != nullptr && results->type == "rtd_msgs/TrackingResult") {
+      read_results(results->name);
+    } else {
+      read_poses(choose());
     }
-    finish(topic.name);
-    return std::move(result_);
+    return std::move(file_);
   }
 
  private:
@@ -137,23 +134,51 @@ class PoseReader {
     fail("has no topic " + choice_.topic + "; its topics are:\n" + list_topics(recording_));
   }
 
-  std::map<std::string, std::vector<FramedPose>> read(const std::string& topic, Decode decode) {
+  void read_poses(const RecordedTopic& topic) {
+    const Decode decode = is_tf(topic) ? from_tf : pose_types().at(topic.type);
     std::map<std::string, std::vector<FramedPose>> by_child;
+    read(topic.name, [&](const RecordedMessage& message) {
+      for (FramedPose& pose : decode(message)) by_child[pose.child].push_back(std::move(pose));
+    });
+    const bool framed = is_tf(topic) || !choice_.child.empty();
+    const std::string wanted = framed ? choose_child(by_child, topic.name) : "";
+    for (auto& [child, poses] : by_child) {
+      if (!framed || child == wanted) add(poses, topic.name);
+    }
+    // By stamps: publishers overtake each other. Of equal stamps the last counts.
+    std::ranges::stable_sort(file_.poses, {}, &StampedPose::stamp_ns);
+    file_.poses = geometry::each_stamp_once(file_.poses);
+    if (file_.poses.empty()) fail("topic " + topic.name + " has no poses that can be read");
+  }
+
+  void read_results(const std::string& topic) {
+    std::vector<PublishedPose>& published = file_.published;
+    read(topic, [&](const RecordedMessage& message) {
+      published.push_back(published_pose(ros::decode<msg::TrackingResult>(message.wire, message.bytes)));
+    });
+    // A frame that was sent again has the same result again.
+    std::ranges::stable_sort(published, {}, &PublishedPose::stamp_ns);
+    const auto repeated = std::ranges::unique(published, {}, &PublishedPose::stamp_ns);
+    published.erase(repeated.begin(), repeated.end());
+    file_.poses = measured_poses(published);
+    if (file_.poses.empty()) fail("topic " + topic + " has no measured pose");
+  }
+
+  void read(const std::string& topic, const auto& take) {
     recording_.play({topic});
     while (const auto message = recording_.next()) {
       try {
-        for (FramedPose& pose : decode(*message)) by_child[pose.child].push_back(std::move(pose));
+        take(*message);
       } catch (const ros::WireError& error) {
         note("message recorded at " + std::to_string(message->recorded_ns) + " ns of " + topic + ": " + error.what());
       }
     }
     for (const std::string& damage : recording_.take_damages()) note(damage);
-    return by_child;
   }
 
   void note(const std::string& damage) {
     constexpr std::size_t kMax = 20;
-    if (result_.damages.size() < kMax) result_.damages.push_back(recording_.name() + ": " + damage);
+    if (file_.damages.size() < kMax) file_.damages.push_back(recording_.name() + ": " + damage);
   }
 
   std::string choose_child(const std::map<std::string, std::vector<FramedPose>>& by_child,
@@ -177,57 +202,22 @@ class PoseReader {
       const auto& q = one.pose.orientation;
       const std::int64_t stamp_ns = msg::to_ns(one.header.stamp);
       try {
-        result_.poses.push_back({stamp_ns, geometry::make_pose({x, y, z}, {q.w, q.x, q.y, q.z})});
+        file_.poses.push_back({stamp_ns, geometry::make_pose({x, y, z}, {q.w, q.x, q.y, q.z})});
       } catch (const std::invalid_argument& error) {
         fail(topic + ", stamp " + std::to_string(stamp_ns) + " ns: " + error.what());
       }
     }
   }
 
-  /// By stamps: publishers overtake each other. Of equal stamps the last counts.
-  void finish(const std::string& topic) {
-    std::ranges::stable_sort(result_.poses, {}, &StampedPose::stamp_ns);
-    result_.poses = geometry::each_stamp_once(result_.poses);
-    if (result_.poses.empty()) fail("topic " + topic + " has no poses that can be read");
-  }
-
   recordings::Reader& recording_;
   const PoseChoice& choice_;
-  RecordedPoses result_;
+  PoseFile file_;
 };
 
 }  // namespace
 
-RecordedPoses read_recorded_poses(recordings::Reader& recording, const PoseChoice& choice) {
+PoseFile read_recorded_poses(recordings::Reader& recording, const PoseChoice& choice) {
   return PoseReader(recording, choice).run();
-}
-
-std::optional<std::string> topic_of_results(const recordings::Reader& recording, const PoseChoice& choice) {
-  const recordings::RecordedTopic* topic = recordings::topic_named(recording, choice.topic);
-  if (topic == nullptr || topic->type != "rtd_msgs/TrackingResult") return std::nullopt;
-  return topic->name;
-}
-
-RecordedResults read_recorded_results(recordings::Reader& recording, const std::string& topic) {
-  constexpr std::size_t kMaxDamages = 20;
-  RecordedResults results;
-  const auto note = [&](const std::string& damage) {
-    if (results.damages.size() < kMaxDamages) results.damages.push_back(recording.name() + ": " + damage);
-  };
-  recording.play({topic});
-  while (const auto message = recording.next()) {
-    try {
-      results.published.push_back(published_pose(ros::decode<msg::TrackingResult>(message->wire, message->bytes)));
-    } catch (const ros::WireError& error) {
-      note("message recorded at " + std::to_string(message->recorded_ns) + " ns of " + topic + ": " + error.what());
-    }
-  }
-  for (const std::string& damage : recording.take_damages()) note(damage);
-  // A frame that was sent again has the same result again.
-  std::ranges::stable_sort(results.published, {}, &PublishedPose::stamp_ns);
-  const auto repeated = std::ranges::unique(results.published, {}, &PublishedPose::stamp_ns);
-  results.published.erase(repeated.begin(), repeated.end());
-  return results;
 }
 
 }  // namespace rtd::eval

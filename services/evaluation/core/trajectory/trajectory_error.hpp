@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <numbers>
@@ -26,8 +27,14 @@ struct Step {
 StepError step_error(const Step& estimate, const Step& groundtruth, double scale = 1);
 
 /// Index of the entry nearest to `value` in an ordered, non-empty list; the earlier one when two are equally near.
-std::size_t nearest_index(const std::vector<std::int64_t>& ordered, std::int64_t value);
-std::size_t nearest_index(const std::vector<double>& ordered, double value);
+template <class T>
+std::size_t nearest_index(const std::vector<T>& ordered, T value) {
+  const auto above = std::ranges::lower_bound(ordered, value);
+  if (above == ordered.begin()) return 0;
+  const auto index = static_cast<std::size_t>(above - ordered.begin());
+  if (above == ordered.end()) return index - 1;
+  return value - ordered[index - 1] <= ordered[index] - value ? index - 1 : index;
+}
 
 /// Ground truth by time. The trajectory must outlive it and not be empty.
 class GroundtruthLookup {
