@@ -148,17 +148,14 @@ std::string agreement_rows(const LabelledResults& results) {
          rows;
 }
 
-std::string recall_row(const std::string& name, double roll_deg, double threshold, const MaskRecall& recall) {
-  return fmt::format("{:<36} {:>6.0f} {:>10.2f} {:>12.3f} {:>14.3f} {:>9.3f} {:>8} {:>8}\n", name, roll_deg, threshold,
-                     recall.pixel_recall(), recall.image_share(),
-                     recall.people == 0 ? 1 : double(recall.people_found) / double(recall.people), recall.boxes,
-                     recall.boxes_beside);
-}
-
 std::string recall_rows(const std::string& name, const RecallByRoll& by_roll) {
   std::string text;
   for (const auto& [roll_deg, by_threshold] : by_roll)
-    for (const auto& [threshold, recall] : by_threshold) text += recall_row(name, roll_deg, threshold, recall);
+    for (const auto& [threshold, recall] : by_threshold)
+      text += fmt::format("{:<36} {:>6.0f} {:>10.2f} {:>12.3f} {:>14.3f} {:>9.3f} {:>8} {:>8}\n", name, roll_deg,
+                          threshold, recall.pixel_recall(), recall.image_share(),
+                          recall.people == 0 ? 1 : double(recall.people_found) / double(recall.people), recall.boxes,
+                          recall.boxes_beside);
   return text;
 }
 
@@ -247,14 +244,6 @@ std::string to_table(const MaskResults& results) {
          overlap_rows(results.models);
 }
 
-std::string input_lines(const LabelledResults& results) {
-  return lines_of(results.input, "without label file (no objects)");
-}
-
-std::string input_lines(const MaskResults& results) {
-  return lines_of(results.input, "without mask (left out)");
-}
-
 /// "0:180:15" -> 0, 15 .. 180; "90" -> 90.
 RollRange parse_roll(const std::string& text) {
   RollRange roll;
@@ -278,8 +267,9 @@ void check_output(const EvalDetectorOptions& options) {
   }
 }
 
-void print_results(const EvalDetectorOptions& options, const auto& results, std::ostream& out, std::ostream& err) {
-  err << input_lines(results);
+void print_results(const EvalDetectorOptions& options, const auto& results, const char* without_partner,
+                   std::ostream& out, std::ostream& err) {
+  err << lines_of(results.input, without_partner);
   out << to_table(results);
   if (options.json.empty()) return;
   try {
@@ -339,9 +329,9 @@ int run_eval_detector(const EvalDetectorOptions& options, std::ostream& out, std
       throw service::ConfigError("--mask-model needs --masks DIR that show people (--class person)");
     check_output(options);
     if (options.labels.empty()) {
-      print_results(options, evaluate_masks(options, err), out, err);
+      print_results(options, evaluate_masks(options, err), "without mask (left out)", out, err);
     } else {
-      print_results(options, evaluate_labels(options, err), out, err);
+      print_results(options, evaluate_labels(options, err), "without label file (no objects)", out, err);
     }
     return service::kOk;
   });

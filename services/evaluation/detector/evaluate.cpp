@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "services/evaluation/detector/evaluate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -193,15 +195,17 @@ std::vector<vision::Detection> wanted_boxes(const std::vector<vision::Detection>
 
 void add_recall(const MaskedImage& image, const std::vector<vision::Detection>& found,
                 const EvalDetectorOptions& options, std::map<double, MaskRecall>& by_threshold) {
-  for (const double threshold : options.thresholds)
-    by_threshold[threshold] += measure_mask_recall(image.mask, wanted_boxes(found, options, threshold));
+  for (const double threshold : options.thresholds) {
+    MaskRecall& sum = by_threshold[threshold];
+    sum = measure_mask_recall(image.mask, wanted_boxes(found, options, threshold), sum);
+  }
 }
 
 void add_overlap(const MaskedImage& image, const std::vector<vision::Detection>& found,
                  const EvalDetectorOptions& options, detector::PersonSegmenter& segmenter, MaskOverlap& overlap) {
   const auto boxes = wanted_boxes(found, options, *std::ranges::min_element(options.thresholds));
   const int all = segmenter.config().masks_per_frame;
-  overlap += measure_mask_overlap(image.mask, boxes, segmenter.segment(image.image, boxes, all));
+  overlap = measure_mask_overlap(image.mask, boxes, segmenter.segment(image.image, boxes, all), overlap);
 }
 
 std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOptions& options, InputReport& input) {
@@ -215,21 +219,14 @@ std::optional<MaskedImage> read_pair(const fs::path& path, const EvalDetectorOpt
   const auto reject = [&](const std::string& problem) {
     ++input.not_decoded;
     input.problems.push_back(problem + ", left out");
+    return std::nullopt;
   };
-  if (pair.image.empty()) {
-    reject(path.filename().string() + ": is not an image");
-    return std::nullopt;
-  }
-  if (pair.mask.empty()) {
-    reject(mask_path.filename().string() + ": is not an image");
-    return std::nullopt;
-  }
-  if (pair.mask.size() != pair.image.size()) {
-    reject(mask_path.filename().string() + ": is " + std::to_string(pair.mask.cols) + " x " +
-           std::to_string(pair.mask.rows) + " px, its image is " + std::to_string(pair.image.cols) + " x " +
-           std::to_string(pair.image.rows));
-    return std::nullopt;
-  }
+  if (pair.image.empty()) return reject(path.filename().string() + ": is not an image");
+  const std::string name = mask_path.filename().string();
+  if (pair.mask.empty()) return reject(name + ": is not an image");
+  if (pair.mask.size() != pair.image.size())
+    return reject(fmt::format("{}: is {} x {} px, its image is {} x {}", name, pair.mask.cols, pair.mask.rows,
+                              pair.image.cols, pair.image.rows));
   pair.mask = options.dark_masks ? pair.mask < 128 : pair.mask >= 128;
   return pair;
 }

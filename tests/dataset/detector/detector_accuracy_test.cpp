@@ -59,7 +59,7 @@ class DetectorQuality : public ::testing::Test {
     eval::MaskRecall recall;
     for (std::size_t i = 0; i < std::min(images.size(), masks.size()); i += step) {
       const cv::Mat mask = cv::imread(masks[i].string(), cv::IMREAD_GRAYSCALE);
-      recall += eval::measure_mask_recall(mask, people(detector, cv::imread(images[i].string())));
+      recall = eval::measure_mask_recall(mask, people(detector, cv::imread(images[i].string())), recall);
     }
     return recall;
   }

@@ -56,16 +56,8 @@ double MaskOverlap::box_precision() const {
   return share_of(marked_px, boxed_px);
 }
 
-MaskOverlap& MaskOverlap::operator+=(const MaskOverlap& other) {
-  boxed_px += other.boxed_px;
-  marked_px += other.marked_px;
-  labelled_px += other.labelled_px;
-  common_px += other.common_px;
-  return *this;
-}
-
 MaskOverlap measure_mask_overlap(const cv::Mat& mask, const std::vector<vision::Detection>& boxes,
-                                 const vision::PersonMasks& labels) {
+                                 const vision::PersonMasks& labels, MaskOverlap sum) {
   cv::Mat boxed = cv::Mat::zeros(mask.size(), CV_8UC1), labelled = boxed.clone();
   for (const vision::Detection& box : boxes) {
     const cv::Point corner(static_cast<int>(std::floor(box.x_px)), static_cast<int>(std::floor(box.y_px)));
@@ -79,7 +71,11 @@ MaskOverlap measure_mask_overlap(const cv::Mat& mask, const std::vector<vision::
         labelled.at<uchar>(row, column) = 255;
   const cv::Mat marked = (mask != 0) & boxed;
   labelled &= boxed;
-  return {count(boxed), count(marked), count(labelled), count(marked & labelled)};
+  sum.boxed_px += count(boxed);
+  sum.marked_px += count(marked);
+  sum.labelled_px += count(labelled);
+  sum.common_px += count(marked & labelled);
+  return sum;
 }
 
 double MaskRecall::pixel_recall() const {
@@ -90,35 +86,23 @@ double MaskRecall::image_share() const {
   return share_of(images_complete, images);
 }
 
-MaskRecall& MaskRecall::operator+=(const MaskRecall& other) {
-  images += other.images;
-  images_complete += other.images_complete;
-  pixels += other.pixels;
-  covered_pixels += other.covered_pixels;
-  people += other.people;
-  people_found += other.people_found;
-  boxes += other.boxes;
-  boxes_beside += other.boxes_beside;
-  return *this;
-}
-
-MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes) {
+MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes, MaskRecall sum) {
   const cv::Mat marked = mask != 0;
   cv::Mat boxed = cv::Mat::zeros(mask.size(), CV_8UC1);
-  MaskRecall recall;
-  recall.images = 1;
+  const std::size_t missed_before = sum.people - sum.people_found;
+  ++sum.images;
   for (const vision::Detection& box : boxes) {
     const cv::Rect area = pixels_of(box, mask.size());
     if (area.empty()) continue;
     boxed(area).setTo(255);
-    ++recall.boxes;
-    if (static_cast<double>(count(marked(area))) < kBesideShare * area.area()) ++recall.boxes_beside;
+    ++sum.boxes;
+    if (static_cast<double>(count(marked(area))) < kBesideShare * area.area()) ++sum.boxes_beside;
   }
-  recall.pixels = count(marked);
-  recall.covered_pixels = count(marked & boxed);
-  count_people(marked, marked & boxed, recall);
-  recall.images_complete = recall.people == recall.people_found ? 1 : 0;
-  return recall;
+  sum.pixels += count(marked);
+  sum.covered_pixels += count(marked & boxed);
+  count_people(marked, marked & boxed, sum);
+  if (sum.people - sum.people_found == missed_before) ++sum.images_complete;
+  return sum;
 }
 
 }  // namespace rtd::eval

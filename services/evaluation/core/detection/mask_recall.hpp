@@ -10,7 +10,7 @@
 
 namespace rtd::eval {
 
-/// How far the labels of a detector's masks agree with true masks, inside its boxes. Sums up over images with +=.
+/// How far the labels of a detector's masks agree with true masks, inside its boxes.
 struct MaskOverlap {
   std::size_t boxed_px = 0;                    ///< inside boxes; all others count only those
   std::size_t marked_px = 0, labelled_px = 0;  ///< in the true mask; with a label
@@ -20,15 +20,14 @@ struct MaskOverlap {
   double precision() const;      ///< common / labelled; 1 without labels
   double recall() const;         ///< common / marked; 1 when nothing is marked
   double box_precision() const;  ///< marked / boxed: that of boxes alone; 1 without boxes
-  MaskOverlap& operator+=(const MaskOverlap& other);
 };
 
-/// One image: the true `mask` (CV_8UC1, not 0 = marked) against labels of the same image. Without labels, nothing is
-/// labelled.
+/// Adds one image to `sum`: the true `mask` (CV_8UC1, not 0 = marked) against labels of the same image. Without labels,
+/// nothing is labelled.
 MaskOverlap measure_mask_overlap(const cv::Mat& mask, const std::vector<vision::Detection>& boxes,
-                                 const vision::PersonMasks& labels);
+                                 const vision::PersonMasks& labels, MaskOverlap sum = {});
 
-/// How much of what a mask marks lies in boxes. Sums up over images with +=.
+/// How much of what a mask marks lies in boxes.
 struct MaskRecall {
   std::size_t images = 0, images_complete = 0;  ///< complete: every person in it found
   std::size_t pixels = 0, covered_pixels = 0;   ///< marked; marked and inside a box
@@ -37,10 +36,9 @@ struct MaskRecall {
 
   double pixel_recall() const;  ///< 1 when nothing is marked
   double image_share() const;   ///< images_complete / images
-  MaskRecall& operator+=(const MaskRecall& other);
 };
 
-/// One image: `mask` (CV_8UC1, not 0 = marked) against boxes in the same pixels.
-MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes);
+/// Adds one image to `sum`: `mask` (CV_8UC1, not 0 = marked) against boxes in the same pixels.
+MaskRecall measure_mask_recall(const cv::Mat& mask, const std::vector<vision::Detection>& boxes, MaskRecall sum = {});
 
 }  // namespace rtd::eval

@@ -41,7 +41,7 @@ TEST(MaskOverlap, is_nothing_without_labels_and_all_without_anything) {
 
 TEST(MaskOverlap, sums_up_over_images) {
   MaskOverlap sum = measure_mask_overlap(mask_of({0, 0, 20, 40}), kBox, labels_in({0, 0, 5, 10}));
-  sum += measure_mask_overlap(mask_of({0, 0, 20, 40}), kBox, {});
+  sum = measure_mask_overlap(mask_of({0, 0, 20, 40}), kBox, {}, sum);
   EXPECT_DOUBLE_EQ(sum.iou(), 0.5);
   EXPECT_DOUBLE_EQ(sum.precision(), 1);
 }
@@ -82,7 +82,7 @@ TEST(MaskRecall, counts_boxes_beside_the_mask) {
 
 TEST(MaskRecall, adds_up_over_images) {
   MaskRecall sum = measure_mask_recall(two_people(), {});
-  sum += measure_mask_recall(two_people(), {box(0, 0, 200, 100)});
+  sum = measure_mask_recall(two_people(), {box(0, 0, 200, 100)}, sum);
   EXPECT_DOUBLE_EQ(sum.pixel_recall(), 0.5);
   EXPECT_DOUBLE_EQ(sum.image_share(), 0.5);
 }
