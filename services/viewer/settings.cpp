@@ -16,6 +16,10 @@ foxglove::ParameterValue to_parameter(const service::SettingValue& value) {
   return std::visit([](const auto& held) { return foxglove::ParameterValue(held); }, value);
 }
 
+auto find(const std::vector<page::ServiceLine>& services, std::string_view name) {
+  return std::ranges::find(services, name, [](const page::ServiceLine& line) { return line.status.service; });
+}
+
 std::optional<std::string> argument_for(const service::Setting& setting, const foxglove::ParameterValue& value) {
   if (const auto* flag = std::get_if<bool>(&value)) return argument_of(setting, *flag);
   if (const auto* number = std::get_if<double>(&value)) return argument_of(setting, *number);
@@ -25,13 +29,12 @@ std::optional<std::string> argument_for(const service::Setting& setting, const f
 
 }  // namespace
 
-std::vector<foxglove::Parameter> settings_of(const std::string& robot,
-                                             const std::vector<msg::ServiceStatus>& services) {
+std::vector<foxglove::Parameter> settings_of(const std::string& robot, const std::vector<page::ServiceLine>& services) {
   std::vector<foxglove::Parameter> parameters;
   for (const service::Setting& setting : service::live_settings()) {
-    const auto status = std::ranges::find(services, setting.service, &msg::ServiceStatus::service);
-    if (status == services.end()) continue;
-    if (const auto value = value_in(*status, setting))
+    const auto line = find(services, setting.service);
+    if (line == services.end()) continue;
+    if (const auto value = value_in(line->status, setting))
       parameters.push_back({(robot.empty() ? "" : robot + '.') + setting.name, to_parameter(*value)});
   }
   return parameters;
@@ -50,13 +53,10 @@ std::optional<SettingCall> call_for(const foxglove::Parameter& parameter) {
 }
 
 std::optional<page::Playback> playback_of(const std::vector<page::ServiceLine>& services) {
-  const auto service = [&](const char* name) {
-    return std::ranges::find(services, name, [](const page::ServiceLine& line) { return line.status.service; });
-  };
   const auto ended = [](const page::ServiceLine& line) {
     return line.status.state >= msg::ServiceState::kFinished || page::state_text(line) == std::string_view("gone");
   };
-  const auto replay = service("replay"), camera = service("camera");
+  const auto replay = find(services, "replay"), camera = find(services, "camera");
   if (replay == services.end()) return std::nullopt;
   const auto metric = [&](const char* name) { return service::find_metric(replay->status, name); };
   const auto position = metric(service::metric::kReplayPositionS), length = metric(service::metric::kReplayLengthS);

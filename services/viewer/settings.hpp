@@ -15,7 +15,7 @@
 namespace rtd::viewer {
 
 /// Those that the services of a robot report; names begin with the robot's, if it has one: "anna.filter.mode".
-std::vector<foxglove::Parameter> settings_of(const std::string& robot, const std::vector<msg::ServiceStatus>& services);
+std::vector<foxglove::Parameter> settings_of(const std::string& robot, const std::vector<page::ServiceLine>& services);
 
 /// A call that sets a parameter.
 struct SettingCall {

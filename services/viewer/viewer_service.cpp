@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spawn.h>
 #include <sys/random.h>
 #include <unistd.h>
@@ -71,17 +72,11 @@ using service::ConfigError;
 constexpr std::chrono::milliseconds kTick{8}, kIdleTick{40};  // with and without clients
 constexpr std::int64_t kRefreshPeriodNs = 500'000'000;
 
-std::string hexadecimal(std::span<const unsigned char> bytes) {
-  std::string text;
-  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
-
 std::string random_text() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
     throw ConfigError("no random numbers for a token: give one with --token");
-  return hexadecimal(bytes);
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 /// On loopback any program and, through a browser, many a page can connect: without a token of the operator's own they
@@ -332,10 +327,10 @@ void ViewerService::refresh_commands() {
 void ViewerService::refresh_playback() {
   std::vector<foxglove::Parameter> parameters;
   for (auto& [name, feed] : robots_) {
-    const std::vector<msg::ServiceStatus> services = feed->mirror().services();
+    const std::vector<page::ServiceLine> services = feed->mirror().services(service::monotonic_ns());
     const auto settings = settings_of(name, services);
     parameters.insert(parameters.end(), settings.begin(), settings.end());
-    const auto playback = playback_of(feed->mirror().services(service::monotonic_ns()));
+    const auto playback = playback_of(services);
     if (playback) feed->mirror().set(Item::kPlayback, page::playback(feed->mirror().index(), *playback));
     if (name == runtime_.bus.robot()) foxglove_.set_played(playback ? played(*playback) : std::nullopt);
   }

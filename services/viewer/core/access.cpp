@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 
 namespace rtd::viewer {
 namespace {
@@ -47,18 +48,14 @@ bool right_origin(const AccessRules& rules, const AccessRequest& request) {
   return scheme != std::string_view::npos && lower(request.origin.substr(scheme + 3)) == lower(request.host);
 }
 
-int hex(char digit) {
-  if (digit >= '0' && digit <= '9') return digit - '0';
-  const int letter = std::tolower(static_cast<unsigned char>(digit));
-  return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
-}
-
 std::string decoded(std::string_view text) {
   std::string result;
   for (std::size_t place = 0; place < text.size(); ++place) {
-    const bool escaped =
-        text[place] == '%' && place + 2 < text.size() && hex(text[place + 1]) >= 0 && hex(text[place + 2]) >= 0;
-    result += escaped ? static_cast<char>(16 * hex(text[place + 1]) + hex(text[place + 2])) : text[place];
+    const std::string_view digits = text.substr(place + 1, 2);
+    unsigned code = 0;
+    const bool escaped = text[place] == '%' && digits.size() == 2 &&
+                         std::from_chars(digits.begin(), digits.end(), code, 16).ptr == digits.end();
+    result += escaped ? static_cast<char>(code) : text[place];
     if (escaped) place += 2;
   }
   return result;

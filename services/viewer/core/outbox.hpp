@@ -67,14 +67,12 @@ class ByteWriter {
  public:
   template <class... T>
   explicit ByteWriter(T... values) {
-    (put(values), ...);
+    put(values...);
   }
-  template <class T>
-  void put(T value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    const std::size_t end = bytes_.size();
-    bytes_.resize(end + sizeof(T));
-    std::memcpy(bytes_.data() + end, &value, sizeof(T));
+  template <class... T>
+  void put(T... values) {
+    static_assert((std::is_trivially_copyable_v<T> && ...));
+    (put_bytes(&values, sizeof(T)), ...);
   }
   void put_bytes(const void* data, std::size_t size) {
     const auto* bytes = static_cast<const std::byte*>(data);

@@ -18,7 +18,7 @@ ByteWriter begin(Kind kind, std::uint8_t robot, std::uint32_t map_id, std::size_
 }
 
 void put(ByteWriter& writer, const Eigen::Vector3f& vector) {
-  for (int axis = 0; axis < 3; ++axis) writer.put(vector[axis]);
+  writer.put(vector.x(), vector.y(), vector.z());
 }
 
 double seconds(const msg::Time& stamp) {
@@ -41,15 +41,12 @@ void put_points(ByteWriter& writer, const KeyframeRef& keyframe, std::size_t str
   for (const Eigen::Vector3f& point : points) reach = std::max(reach, point.cwiseAbs().maxCoeff());
   const float scale = reach / INT16_MAX;
   const std::size_t total = std::min<std::size_t>(points.size(), UINT16_MAX);
-  writer.put(keyframe.first);
-  writer.put(static_cast<std::uint16_t>((total + stride - 1) / stride));
-  writer.put(static_cast<std::uint16_t>(total));
-  writer.put(scale);
+  writer.put(keyframe.first, static_cast<std::uint16_t>((total + stride - 1) / stride),
+             static_cast<std::uint16_t>(total), scale);
   for (std::size_t place = 0; place < total; place += stride) {
     for (int axis = 0; axis < 3; ++axis)
       writer.put(static_cast<std::int16_t>(std::lround(points[place][axis] / scale)));
-    writer.put(std::uint8_t{255});
-    writer.put(std::uint8_t{0});
+    writer.put(std::uint8_t{255}, std::uint8_t{0});
   }
 }
 
@@ -61,7 +58,7 @@ Bytes poses(std::uint8_t robot, std::uint32_t map_id, std::span<const KeyframeRe
     const Eigen::Quaternionf q(keyframe->T_world_camera.linear());
     writer.put(id);
     put(writer, Eigen::Vector3f(keyframe->T_world_camera.translation()));
-    for (const float value : {q.x(), q.y(), q.z(), q.w()}) writer.put(value);
+    writer.put(q.x(), q.y(), q.z(), q.w());
   }
   return writer.take();
 }
@@ -82,9 +79,7 @@ Bytes covisibility(std::uint8_t robot, std::span<const KeyframeRef> keyframes) {
   ByteWriter writer = begin(Kind::kCovisibility, robot, 0, keyframes.size());
   for (const auto& [id, keyframe] : keyframes) {
     const std::size_t count = std::min<std::size_t>(keyframe->covisible.size(), UINT16_MAX);
-    writer.put(id);
-    writer.put(static_cast<std::uint16_t>(count));
-    writer.put(std::uint16_t{0});
+    writer.put(id, static_cast<std::uint16_t>(count), std::uint16_t{0});
     writer.put_bytes(keyframe->covisible.data(), count * sizeof(std::uint32_t));
   }
   return writer.take();
@@ -111,10 +106,10 @@ Bytes trajectory_values(std::uint8_t robot, std::uint32_t start, std::int64_t be
   ByteWriter writer = begin(Kind::kTrajectoryValues, robot, 0, points.size());
   writer.put(start);
   for (std::size_t place = 0; place < points.size(); ++place) {
-    writer.put(static_cast<std::uint32_t>(points[place].state));
-    writer.put(static_cast<float>(1e-9 * static_cast<double>(msg::minus_ns(points[place].stamp_ns, begin_ns))));
-    writer.put(points[place].sigma_m);
-    writer.put(errors_m[place]);
+    const TrajectoryPoint& point = points[place];
+    writer.put(static_cast<std::uint32_t>(point.state),
+               static_cast<float>(1e-9 * static_cast<double>(msg::minus_ns(point.stamp_ns, begin_ns))), point.sigma_m,
+               errors_m[place]);
   }
   return writer.take();
 }
@@ -129,9 +124,8 @@ Bytes truth(std::uint8_t robot, std::uint32_t start, std::span<const Eigen::Vect
 Bytes image(std::uint8_t robot, const msg::CompressedImage& image, Kind kind) {
   const cv::Size size = vision::jpeg_size(image.data);
   ByteWriter writer = begin(kind, robot, 0, image.data.size());
-  writer.put(seconds(image.header.stamp));
-  writer.put(static_cast<std::uint32_t>(size.width));
-  writer.put(static_cast<std::uint32_t>(size.height));
+  writer.put(seconds(image.header.stamp), static_cast<std::uint32_t>(size.width),
+             static_cast<std::uint32_t>(size.height));
   writer.put_bytes(image.data.data(), image.data.size());
   return writer.take();
 }
@@ -139,15 +133,13 @@ Bytes image(std::uint8_t robot, const msg::CompressedImage& image, Kind kind) {
 Bytes features(std::uint8_t robot, const msg::FeatureFrame& frame) {
   const std::uint32_t count = std::min(frame.count, msg::kMaxFeatures);
   ByteWriter writer = begin(Kind::kFeatures, robot, 0, count);
-  writer.put(1e-9 * static_cast<double>(frame.stamp_ns));
-  writer.put(static_cast<std::uint16_t>(frame.width));
-  writer.put(static_cast<std::uint16_t>(frame.height));
+  writer.put(1e-9 * static_cast<double>(frame.stamp_ns), static_cast<std::uint16_t>(frame.width),
+             static_cast<std::uint16_t>(frame.height));
   for (std::uint32_t place = 0; place < count; ++place) {
     const msg::Feature& feature = frame.features[place];
-    writer.put(sixteenths(feature.u_raw_px));
-    writer.put(sixteenths(feature.v_raw_px));
-    writer.put(static_cast<std::uint8_t>((feature.flags & msg::kFeatureRemoved) != 0));
-    writer.put(byte_of(feature.static_probability));
+    const bool removed = (feature.flags & msg::kFeatureRemoved) != 0;
+    writer.put(sixteenths(feature.u_raw_px), sixteenths(feature.v_raw_px), static_cast<std::uint8_t>(removed),
+               byte_of(feature.static_probability));
   }
   return writer.take();
 }
@@ -160,8 +152,7 @@ void put_runs(ByteWriter& writer, std::span<const std::uint8_t> values) {
   for (std::size_t place = 0; place < values.size();) {
     std::size_t end = place + 1;
     while (end < values.size() && end - place < 256 && values[end] == values[place]) ++end;
-    writer.put(values[place]);
-    writer.put(static_cast<std::uint8_t>(end - place - 1));
+    writer.put(values[place], static_cast<std::uint8_t>(end - place - 1));
     place = end;
   }
   writer.set(4, static_cast<std::uint32_t>(writer.size() - first));
@@ -175,9 +166,7 @@ Bytes plan(std::uint8_t robot, const msg::OccupancyGrid& plan) {
   const std::size_t cells = std::size_t{width} * height;
   if (cells == 0 || width > kMaxSide || height > kMaxSide || plan.data.size() != cells || !(cell_m > 0)) return {};
   ByteWriter writer = begin(Kind::kPlan, robot, 0, 0);
-  writer.put(cell_m);
-  writer.put(static_cast<std::uint16_t>(width));
-  writer.put(static_cast<std::uint16_t>(height));
+  writer.put(cell_m, static_cast<std::uint16_t>(width), static_cast<std::uint16_t>(height));
   const auto& [position, turn] = origin;
   for (const double value : {position.x, position.y, position.z, turn.x, turn.y, turn.z, turn.w})
     writer.put(static_cast<float>(value));
@@ -194,9 +183,8 @@ Bytes runs(Kind kind, std::uint8_t robot, const msg::Image& image) {
       image.data.size() < pixels)
     return {};
   ByteWriter writer = begin(kind, robot, 0, 0);
-  writer.put(seconds(image.header.stamp));
-  writer.put(static_cast<std::uint16_t>(image.width));
-  writer.put(static_cast<std::uint16_t>(image.height));
+  writer.put(seconds(image.header.stamp), static_cast<std::uint16_t>(image.width),
+             static_cast<std::uint16_t>(image.height));
   put_runs(writer, {image.data.data(), pixels});
   return writer.take();
 }
@@ -205,8 +193,7 @@ Bytes dense(Kind kind, std::uint8_t robot, std::uint32_t start, std::uint32_t to
             float scale_m, std::span<const std::byte> points) {
   constexpr std::size_t kPointBytes = 9;
   ByteWriter writer = begin(kind, robot, 0, points.size() / kPointBytes);
-  writer.put(start);
-  writer.put(total);
+  writer.put(start, total);
   put(writer, origin_m);
   writer.put(scale_m);
   writer.put_bytes(points.data(), points.size());

@@ -133,7 +133,7 @@ void RobotMirror::add(const msg::TrackingResult& result, double finished_ms) {
     map_.add_position(result);
     if (result.map_id == 0) truth_.add_estimate(result.stamp_ns, position);
   }
-  set_payload(Item::kTracking, page::tracking(index_, result, finished_ms, filter_stage_ms_));
+  set(Item::kTracking, page::tracking(index_, result, finished_ms, filter_stage_ms_));
   constexpr double kApart_ms = 200;
   constexpr std::size_t kRecent = 300;
   if (std::abs(finished_ms - recent_ms_) < kApart_ms) return;
@@ -220,23 +220,13 @@ void RobotMirror::add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& positi
 }
 
 void RobotMirror::set_commands(const std::vector<CommandInfo>& commands) {
-  set_payload(Item::kCommands, page::commands(index_, commands));
-}
-
-void RobotMirror::set(Item item, std::string json) {
-  set_payload(item, std::move(json));
+  set(Item::kCommands, page::commands(index_, commands));
 }
 
 void RobotMirror::refresh(std::int64_t now_ns) {
-  set_payload(Item::kStatus, page::services(index_, services(now_ns)));
+  set(Item::kStatus, page::services(index_, services(now_ns)));
   truth_.align_if_grown();
-  if (truth_.ate_m() > 0) set_payload(Item::kTruthError, page::truth_error(index_, truth_.ate_m(), truth_.pairs()));
-}
-
-std::vector<msg::ServiceStatus> RobotMirror::services() const {
-  std::vector<msg::ServiceStatus> list;
-  for (const auto& [name, known] : services_) list.push_back(known.status);
-  return list;
+  if (truth_.ate_m() > 0) set(Item::kTruthError, page::truth_error(index_, truth_.ate_m(), truth_.pairs()));
 }
 
 std::vector<page::ServiceLine> RobotMirror::services(std::int64_t now_ns) const {
@@ -246,10 +236,9 @@ std::vector<page::ServiceLine> RobotMirror::services(std::int64_t now_ns) const 
   return lines;
 }
 
-/// A revision stands for a content: what is set again unchanged is not sent again.
-void RobotMirror::set_payload(Item item, std::string text) {
+void RobotMirror::set(Item item, const std::string& json) {
   Message& message = items_[static_cast<std::size_t>(item)];
-  Payload payload = shared_text(text);
+  Payload payload = shared_text(json);
   if (message.payload && *message.payload == *payload) return;
   message.payload = std::move(payload);
   ++message.revision;

@@ -101,8 +101,8 @@ class RobotMirror {
   void add(const msg::Movers& movers);
   void add_truth(std::int64_t stamp_ns, const Eigen::Vector3d& position_m);
   void set_commands(const std::vector<CommandInfo>& commands);
-  /// Any other item, as JSON without "robot".
-  void set(Item item, std::string json);
+  /// Any other item. A revision stands for a content: what is set again unchanged is not sent again.
+  void set(Item item, const std::string& json);
   /// Renews what grows old without messages: states and ages of services.
   void refresh(std::int64_t now_ns);
 
@@ -120,7 +120,6 @@ class RobotMirror {
   /// The newest image that the filter has looked at, with its overlays; without a filter, the newest one.
   std::optional<AnnotatedImage> newest_image() const;
   const TruthTrack& truth() const { return truth_; }
-  std::vector<msg::ServiceStatus> services() const;
   std::vector<page::ServiceLine> services(std::int64_t now_ns) const;
   /// Dense points, 9 bytes each as on the wire, and how to read them. The first n are spread over all.
   struct Dense {
@@ -144,7 +143,6 @@ class RobotMirror {
     std::int64_t received_ns;
   };
 
-  void set_payload(Item item, std::string text);
   bool filter_is_late() const;
   static void keep(Overlays& overlays, std::int64_t stamp_ns, Payload payload);
   static Payload at(const Overlays& overlays, std::int64_t stamp_ns, std::int64_t tolerance_ns);

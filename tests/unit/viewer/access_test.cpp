@@ -86,11 +86,11 @@ TEST(Access, a_query_is_taken_apart) {
   EXPECT_EQ(path_of("/live?token=x"), "/live");
 }
 
-msg::ServiceStatus status(const std::string& service, std::vector<msg::Metric> metrics) {
-  msg::ServiceStatus result;
-  result.service = service;
-  result.metrics = std::move(metrics);
-  return result;
+page::ServiceLine status(const std::string& service, std::vector<msg::Metric> metrics) {
+  page::ServiceLine line;
+  line.status.service = service;
+  line.status.metrics = std::move(metrics);
+  return line;
 }
 
 TEST(Settings, come_from_the_heartbeats) {
@@ -116,13 +116,14 @@ TEST(Settings, setting_one_calls_a_command) {
 }
 
 TEST(Settings, a_replay_says_where_it_is) {
-  page::ServiceLine replay{status("replay", {{"replay.position_s", 3}, {"replay.length_s", 25}, {"replay.paused", 1}})};
-  page::ServiceLine camera{status("camera", {})};
+  page::ServiceLine replay =
+      status("replay", {{"replay.position_s", 3}, {"replay.length_s", 25}, {"replay.paused", 1}});
+  page::ServiceLine camera = status("camera", {});
   replay.status.state = camera.status.state = msg::ServiceState::kRunning;
   EXPECT_TRUE(playback_of({replay})->paused);
   EXPECT_EQ(playback_of({replay})->length_s, 25);
   EXPECT_FALSE(playback_of({camera}));
-  EXPECT_FALSE(playback_of({{status("replay", {})}}));
+  EXPECT_FALSE(playback_of({status("replay", {})}));
   EXPECT_FALSE(playback_of({replay, camera})->replaced);
   replay.status.state = msg::ServiceState::kFinished;
   EXPECT_TRUE(playback_of({replay})->ended);
