@@ -7,17 +7,17 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <condition_variable>
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
-#include <mutex>
 #include <ostream>
+#include <set>
 
 #include "common/bus/host/host_checks.hpp"
 #include "common/bus/host/shm_leftovers.hpp"
 #include "common/bus/network.hpp"
+#include "common/concurrency/bounded_queue.hpp"
 #include "common/msg/services.hpp"
 #include "common/msg/word_list.hpp"
 #include "common/process/executable.hpp"
@@ -51,27 +51,6 @@ void check_services(Findings& findings) {
     findings.push_back({Verdict::kWarn, "services: not there, for some options only:" + left_out + cure});
 }
 
-/// The problems that the bus reports after joining.
-class Problems {
- public:
-  void add(const std::string& problem) {
-    const std::lock_guard lock(mutex_);
-    if (std::ranges::count(all_, problem) == 0) all_.push_back(problem);
-    changed_.notify_all();
-  }
-  /// Waits for the first.
-  std::vector<std::string> wait(std::chrono::milliseconds most) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, most, [this] { return !all_.empty(); });
-    return all_;
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<std::string> all_;
-};
-
 /// A missing Discovery Server is noticed only after a while, and so are participants without keys in a secured domain.
 std::chrono::milliseconds patience(const bus::BusOptions& options) {
   if (!options.network.discovery_server.empty()) return bus::kServerPatience + std::chrono::milliseconds(500);
@@ -82,16 +61,17 @@ std::chrono::milliseconds patience(const bus::BusOptions& options) {
 void check_vendor(Findings& findings, bus::BusOptions options, const std::string& vendor) {
   const bool used = options.vendor == vendor;
   options.vendor = vendor;
-  Problems problems;
-  options.on_problem = [&problems](const std::string& problem) { problems.add(problem); };
+  concurrency::BoundedQueue<std::string> problems(64, concurrency::Overflow::kDropOldest);
+  options.on_problem = [&problems](const std::string& problem) { problems.push(problem); };
   try {
     const std::shared_ptr<bus::Bus> bus = bus::connect(options);
     findings.push_back({Verdict::kOk, "bus: " + bus->vendor() + " joins domain " + std::to_string(options.domain) +
                                           (used ? "" : " (--dds " + vendor + ")")});
     // Participants without keys do no harm; without its Discovery Server no participant is found.
     const Verdict verdict = options.network.discovery_server.empty() ? Verdict::kWarn : Verdict::kFail;
-    for (const std::string& problem : problems.wait(patience(options)))
-      findings.push_back({verdict, "bus: " + problem});
+    std::set<std::string> known;
+    for (auto problem = problems.pop_for(patience(options)); problem; problem = problems.pop_for({}))
+      if (known.insert(*problem).second) findings.push_back({verdict, "bus: " + *problem});
   } catch (const std::exception& error) {
     findings.push_back({used ? Verdict::kFail : Verdict::kWarn, "bus: " + vendor + ": " + error.what()});
   }
