@@ -30,6 +30,11 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+class WriteError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 slam::MapContents read(const std::string& file, std::ostream& err) {
   std::error_code unknown;  // the reader reports errors of the file
   service::Progress progress(err, "reading", fs::is_regular_file(file, unknown) ? fs::file_size(file, unknown) : 0);
@@ -69,14 +74,12 @@ void write_part(const slam::MapContents& contents, const MapPart& part, const st
   format == "pcd" ? write_pcd(out, points) : slam::write_ply(out, points);
 }
 
-/// Writes with write_to(stream); nothing is left of a file that could not be written.
-bool write_file(const std::string& path, std::ostream& err, const std::function<void(std::ostream&)>& write_to) {
+/// Writes with write_to(stream); nothing is left of a file that could not be written. Throws WriteError.
+void write_file(const std::string& path, const std::function<void(std::ostream&)>& write_to) {
   try {
     io::write_file(path, write_to, {.named_by = io::NamedBy::kOperator});
-    return true;
   } catch (const io::IoError& error) {
-    err << "rtd map export: cannot write " << error.what() << '\n';
-    return false;
+    throw WriteError(std::string("cannot write ") + error.what());
   }
 }
 
@@ -97,9 +100,9 @@ std::vector<slam::MapPoint> occupied_of(const occupancy::Volume& volume) {
   return points;
 }
 
-/// The floor plan of a voxel map, with its YAML file. Returns the exit code.
-int write_plan(const MapRequest& request, const occupancy::Volume& volume, const std::vector<slam::MapPoint>& occupied,
-               std::ostream& out, std::ostream& err) {
+/// The floor plan of a voxel map, with its YAML file.
+void write_plan(const MapRequest& request, const occupancy::Volume& volume, const std::vector<slam::MapPoint>& occupied,
+                std::ostream& out) {
   const std::string yaml = fs::path(request.out).replace_extension(".yaml").string();
   if (yaml == request.out || fs::exists(yaml)) throw UsageError(yaml + " exists already: choose another name");
   occupancy::FloorFinder finder;
@@ -111,28 +114,24 @@ int write_plan(const MapRequest& request, const occupancy::Volume& volume, const
   if (grid.cells.empty())
     throw UsageError(fmt::format("nothing is known just above the floor at {:.2f} m: --floor names another", *floor_m));
   const auto name = fs::path(request.out).filename().string();
-  const bool written = write_file(request.out, err, [&](std::ostream& file) { occupancy::write_pgm(file, grid); }) &&
-                       write_file(yaml, err, [&](std::ostream& file) { file << occupancy::map_yaml(grid, name); });
-  if (!written) return service::kRunFailed;
+  write_file(request.out, [&](std::ostream& file) { occupancy::write_pgm(file, grid); });
+  write_file(yaml, [&](std::ostream& file) { file << occupancy::map_yaml(grid, name); });
   out << fmt::format("{}, {}: {} x {} cells, floor at {:.2f} m\n", request.out, yaml, grid.columns, grid.rows,
                      *floor_m);
-  return service::kOk;
 }
 
-/// Of a voxel map (.bt). Returns the exit code.
-int export_voxels(const MapRequest& request, std::ostream& out, std::ostream& err) {
+/// Of a voxel map (.bt).
+void export_voxels(const MapRequest& request, std::ostream& out) {
   if (request.format == "tum" || request.format == "bt" || request.format == "html")
     throw UsageError(request.file + " is a voxel map: it is exported as pgm, ply or pcd");
   io::InputStream file(request.file);
   const occupancy::Volume volume = occupancy::read_octomap(file);
   const std::vector<slam::MapPoint> occupied = occupied_of(volume);
-  if (request.format == "pgm") return write_plan(request, volume, occupied, out, err);
-  const bool written = write_file(request.out, err, [&](std::ostream& to) {
+  if (request.format == "pgm") return write_plan(request, volume, occupied, out);
+  write_file(request.out, [&](std::ostream& to) {
     request.format == "pcd" ? write_pcd(to, occupied) : slam::write_ply(to, occupied);
   });
-  if (!written) return service::kRunFailed;
   out << fmt::format("{}: {} occupied cells\n", request.out, occupied.size());
-  return service::kOk;
 }
 
 /// Red where a landmark may move, blue where it stays.
@@ -141,9 +140,8 @@ map_page::Color color_of(float static_probability) {
   return {static_cast<std::uint8_t>(255 - level / 2), 120, level};
 }
 
-/// Landmarks, coloured by how certainly they stay, and the path of the keyframes. Returns the exit code.
-int write_page(const MapRequest& request, const slam::MapContents& contents, const MapPart& part, std::ostream& out,
-               std::ostream& err) {
+/// Landmarks, coloured by how certainly they stay, and the path of the keyframes.
+void write_page(const MapRequest& request, const slam::MapContents& contents, const MapPart& part, std::ostream& out) {
   map_page::Layer landmarks{.name = "Landmarks"};
   for (const slam::MapPoint& point : points_of(contents, part.id)) {
     landmarks.points_m.push_back(point.position);
@@ -157,18 +155,15 @@ int write_page(const MapRequest& request, const slam::MapContents& contents, con
                                       {"Keyframes", std::to_string(part.keyframes)},
                                       {"Landmarks", std::to_string(part.landmarks)}},
                             .layers = {std::move(landmarks), std::move(path)}};
-  if (!write_file(request.out, err, [&](std::ostream& file) { file << map_page::html(page); }))
-    return service::kRunFailed;
+  write_file(request.out, [&](std::ostream& file) { file << map_page::html(page); });
   out << fmt::format("{}: {} landmarks of map {}, to open in a browser\n", request.out, part.landmarks, part.id);
-  return service::kOk;
 }
 
-/// Returns the exit code.
-int write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
+void write_export(const MapRequest& request, std::ostream& out, std::ostream& err) {
   if (const std::string left_out = occupancy::octomap_left_out(); request.format == "bt" && !left_out.empty())
     throw UsageError(left_out);
   if (fs::exists(request.out)) throw UsageError(request.out + " exists already: choose another name");
-  if (is_octomap(request.file)) return export_voxels(request, out, err);
+  if (is_octomap(request.file)) return export_voxels(request, out);
   if (request.format == "pgm")
     throw UsageError(request.file +
                      " holds landmarks, which are too few for a floor plan: 'rtd run --dense' writes one, "
@@ -179,14 +174,12 @@ int write_export(const MapRequest& request, std::ostream& out, std::ostream& err
   if (request.format == "bt")
     err << "rtd map export: surfaces without landmarks are missing in this voxel map; 'rtd run --dense' writes a full "
            "one, map.bt\n";
-  if (request.format == "html") return write_page(request, contents, part, out, err);
-  const auto write_to = [&](std::ostream& file) { write_part(contents, part, request.format, file); };
-  if (!write_file(request.out, err, write_to)) return service::kRunFailed;
+  if (request.format == "html") return write_page(request, contents, part, out);
+  write_file(request.out, [&](std::ostream& file) { write_part(contents, part, request.format, file); });
   out << fmt::format("{}: {} of map {}\n", request.out,
                      request.format == "tum" ? fmt::format("{} keyframe poses", part.keyframes)
                                              : fmt::format("{} landmarks", part.landmarks),
                      part.id);
-  return service::kOk;
 }
 
 constexpr const char* kExitCodes =
@@ -230,9 +223,11 @@ int run_map(const MapRequest& request, std::ostream& out, std::ostream& err) {
   const std::string name = request.info ? "rtd map info" : "rtd map export";
   return service::report_errors<std::system_error, UsageError>(name, err, [&]() -> int {
     try {
-      if (request.to_export) return write_export(request, out, err);
-      print_info(request, out, err);
+      request.to_export ? write_export(request, out, err) : print_info(request, out, err);
       return service::kOk;
+    } catch (const WriteError& error) {
+      err << name << ": " << error.what() << '\n';
+      return service::kRunFailed;
     } catch (const occupancy::OctomapError& error) {
       err << name << ": " << request.file << ": " << error.what() << "\n";
       return service::kPartialLoss;
