@@ -24,10 +24,6 @@ namespace {
 
 constexpr std::size_t kShownSpans = 5;
 
-double seconds(std::int64_t stamp_ns) {
-  return static_cast<double>(stamp_ns) * 1e-9;
-}
-
 std::string row(const std::string& name, const Statistics& s, double factor, const char* unit) {
   if (s.count == 0) return fmt::format("{:<22} no pairs\n", name);
   return fmt::format("{:<22} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:>9.4f} {:<4} {:>6}\n", name,

@@ -66,10 +66,10 @@ TEST(Chart, curve_is_interrupted_at_gaps_and_at_missing_values) {
     return count;
   };
   chart.curve({0, 1, 2, 6, 7}, {0, 0, 0, 1, 1}, {"#000000"}, 2);
-  EXPECT_EQ(lines(svg.str()), 2U);
+  EXPECT_EQ(lines(svg.document()), 2U);
   Svg other(100, 100, "test");
   Chart(other, {0, 0, 100, 100}, {0, 10}, {0, 1}).curve({0, 1, 2, 3, 4}, {0, 0, kNan, 1, 1}, {"#000000"}, 2);
-  EXPECT_EQ(lines(other.str()), 2U);
+  EXPECT_EQ(lines(other.document()), 2U);
 }
 
 TEST(Svg, leaves_out_what_is_not_finite) {
@@ -80,16 +80,16 @@ TEST(Svg, leaves_out_what_is_not_finite) {
   svg.rect({0, 0, kNan, 1}, "#000000");
   svg.polyline({{0, 0}, {kNan, 1}, {2, 2}}, {"#000000"});
   svg.dots({{kNan, 1}}, 3, "#000000");
-  EXPECT_THAT(svg.str(), Not(HasSubstr("nan")));
-  EXPECT_THAT(svg.str(), HasSubstr("points=\"0,0 2,2\""));
-  EXPECT_THAT(svg.str(), Not(HasSubstr("lost")));
+  EXPECT_THAT(svg.document(), Not(HasSubstr("nan")));
+  EXPECT_THAT(svg.document(), HasSubstr("points=\"0,0 2,2\""));
+  EXPECT_THAT(svg.document(), Not(HasSubstr("lost")));
 }
 
 TEST(Svg, escapes_text) {
   Svg svg(100, 100, "a<b");
   svg.text({0, 0}, "<script>\"&'");
-  EXPECT_THAT(svg.str(), HasSubstr("&lt;script&gt;&quot;&amp;&#39;"));
-  EXPECT_THAT(svg.str(), HasSubstr("aria-label=\"a&lt;b\""));
+  EXPECT_THAT(svg.document(), HasSubstr("&lt;script&gt;&quot;&amp;&#39;"));
+  EXPECT_THAT(svg.document(), HasSubstr("aria-label=\"a&lt;b\""));
 }
 
 }  // namespace

@@ -129,21 +129,12 @@ void Svg::text(Point at, const std::string& content, const TextStyle& style) {
   body_ += ">" + escape_markup(content) + "</text>\n";
 }
 
-std::string Svg::str() const {
-  return fmt::format(
-      "<svg viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" aria-label=\"{2}\" font-family=\"{3}\">\n{4}</svg>\n", width_,
-      height_, escape_markup(label_), kFonts, body_);
-}
-
 std::string Svg::document() const {
-  const std::string background =
-      fmt::format("<rect width=\"{:g}\" height=\"{:g}\" fill=\"#ffffff\"/>\n", width_, height_);
-  std::string drawing = str();
-  const std::string sized =
-      fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{:g}\" height=\"{:g}\" ", width_, height_);
-  drawing.replace(0, 5, sized);
-  drawing.insert(drawing.find(">\n") + 2, background);
-  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + drawing;
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:g}\" "
+      "height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" aria-label=\"{2}\" font-family=\"{3}\">\n"
+      "<rect width=\"{0:g}\" height=\"{1:g}\" fill=\"#ffffff\"/>\n{4}</svg>\n",
+      width_, height_, escape_markup(label_), kFonts, body_);
 }
 
 Range range_of(const std::vector<double>& values) {

@@ -64,8 +64,6 @@ class Svg {
   void dots(const std::vector<Point>& centres, double diameter, const std::string& colour, double opacity = 1);
   void text(Point at, const std::string& content, const TextStyle& style = {});
 
-  /// The drawing, scalable to the width of its container.
-  std::string str() const;
   /// The drawing as a complete SVG file.
   std::string document() const;
 

@@ -35,10 +35,6 @@ LengthUnit length_unit(double largest_m) {
   return {"m", 1};
 }
 
-double seconds(std::int64_t ns) {
-  return static_cast<double>(ns) * 1e-9;
-}
-
 /// What `value_of` gives for each.
 std::vector<double> each(const auto& items, const auto& value_of) {
   std::vector<double> values;

@@ -201,8 +201,8 @@ Json rpe_json(const RpeResult& rpe) {
 Json coverage_json(const Coverage& coverage) {
   Json spans = Json::array();
   for (const LostSpan& span : coverage.lost) {
-    spans.push_back({{"first_s", static_cast<double>(span.first_ns) * 1e-9},
-                     {"last_s", static_cast<double>(span.last_ns) * 1e-9},
+    spans.push_back({{"first_s", seconds(span.first_ns)},
+                     {"last_s", seconds(span.last_ns)},
                      {"frames", span.frames > 0 ? Json(span.frames) : Json(nullptr)}});
   }
   return {{"fraction", coverage.fraction},

@@ -38,8 +38,6 @@ struct LostSpan {
   std::int64_t first_ns = 0;  ///< frame list: first frame without pose; ground truth: last pose before the gap
   std::int64_t last_ns = 0;   ///< frame list: last frame without pose; ground truth: first pose after the gap
   std::size_t frames = 0;     ///< frames without pose; 0 when no frame list is known
-
-  double duration_s() const { return static_cast<double>(last_ns - first_ns) * 1e-9; }
 };
 
 /// How much of a sequence has poses.

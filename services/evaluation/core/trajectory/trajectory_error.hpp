@@ -59,6 +59,10 @@ using geometry::TrajectoryError;
 
 inline constexpr double kRadToDeg = 180 / std::numbers::pi;
 
+inline double seconds(std::int64_t ns) {
+  return static_cast<double>(ns) * 1e-9;
+}
+
 /// Summary of a set of non-negative errors, in their unit. All NaN when count is 0.
 struct Statistics {
   std::size_t count = 0;
