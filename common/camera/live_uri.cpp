@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
+#include "common/camera/source_uri.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/text.hpp"
 

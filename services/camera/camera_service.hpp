@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/camera/depth_figures.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/concurrency/bounded_queue.hpp"
 #include "common/service/config.hpp"

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <random>
 
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/recording/ros_images.hpp"
-#include "common/camera/source_factory.hpp"
 #include "common/concurrency/thread_priority.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/transform_eigen.hpp"

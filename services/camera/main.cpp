@@ -8,7 +8,7 @@
 #include <string>
 
 #include "common/camera/live_uri.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/service/bus_config.hpp"
 #include "common/service/command_line.hpp"

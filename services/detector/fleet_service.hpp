@@ -18,8 +18,8 @@
 #include "common/service/log.hpp"
 #include "common/service/runtime.hpp"
 #include "services/detector/core/fleet/duty.hpp"
-#include "services/detector/fleet/fleet_config.hpp"
-#include "services/detector/fleet/fleet_pipeline.hpp"
+#include "services/detector/fleet_config.hpp"
+#include "services/detector/fleet_pipeline.hpp"
 
 namespace rtd::detector {
 

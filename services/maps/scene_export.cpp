@@ -11,7 +11,7 @@
 #include <ostream>
 #include <vector>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/geometry/trajectory.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/service/command_line.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/io/printable.hpp"
 #include "common/io/recording_forms.hpp"

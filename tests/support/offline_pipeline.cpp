@@ -9,7 +9,7 @@
 #include <sstream>
 #include <thread>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "services/evaluation/core/trajectory/evaluation.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"

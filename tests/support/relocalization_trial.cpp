@@ -7,7 +7,7 @@
 #include <numbers>
 #include <thread>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "common/service/monotonic_clock.hpp"

@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"
 #include "tests/tools/vocabulary_training.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/source_uri.hpp"
 #include "common/camera/synthetic/motion_sensors.hpp"
 #include "common/camera/synthetic/scene.hpp"
 #include "common/camera/synthetic/scene_camera.hpp"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/vision/detection.hpp"
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/engine.hpp"
 #include "services/detector/core/network_input.hpp"

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 
 namespace rtd::detector {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 #include "services/detector/core/detector_config.hpp"
 #include "services/detector/core/network_input.hpp"
 #include "services/detector/core/onnx_file.hpp"

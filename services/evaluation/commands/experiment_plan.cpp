@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/io/bytes.hpp"
 #include "common/io/input_file.hpp"
 #include "common/msg/filter_modes.hpp"

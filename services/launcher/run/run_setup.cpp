@@ -11,7 +11,7 @@
 #include <random>
 
 #include "common/bus/port_check.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/printable.hpp"
 #include "common/msg/services.hpp"

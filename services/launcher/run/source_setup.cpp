@@ -17,7 +17,7 @@
 #include "common/camera/depth_figures.hpp"
 #include "common/camera/frame_source.hpp"
 #include "common/camera/live_uri.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "common/mcap/indexed_reader.hpp"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/exit_code.hpp"

@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "services/slam/core/floor_plane.hpp"
 #include "services/slam/core/map/frame.hpp"
 #include "tests/support/offline_pipeline.hpp"

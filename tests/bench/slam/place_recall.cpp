@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"
 #include "services/filter/core/orb/orb_extractor.hpp"

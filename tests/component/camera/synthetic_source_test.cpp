@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/tum/tum_export.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"

@@ -14,7 +14,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 #include "services/filter/core/boxes/assignment.hpp"
 #include "services/filter/core/dynamic_filter.hpp"

@@ -12,7 +12,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/topics.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/tum/tum_export.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/detector/tiny_network.hpp"

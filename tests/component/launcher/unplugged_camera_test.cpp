@@ -8,7 +8,7 @@
 
 #include "common/bus/bus_factory.hpp"
 #include "common/bus/topics.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/msg/status.hpp"
 #include "tests/component/launcher/rtd_command.hpp"
 #include "tests/support/inbox.hpp"

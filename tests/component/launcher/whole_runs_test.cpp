@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "common/bus/bus_factory.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/recordings/reader.hpp"
 #include "common/ros2/message_json.hpp"
 #include "common/ros2/names.hpp"

@@ -9,7 +9,7 @@
 
 #include "common/msg/transform_eigen.hpp"
 #include "common/vision/rgbd_image.hpp"
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 #include "services/detector/core/network_input.hpp"
 #include "tests/fuzz/red/attack.hpp"
 #include "tests/fuzz/red/red_watch.hpp"

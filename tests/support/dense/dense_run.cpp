@@ -6,7 +6,7 @@
 #include <ctime>
 #include <opencv2/imgproc.hpp>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/msg/transform_eigen.hpp"
 #include "services/evaluation/core/trajectory/trajectory_error.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/synthetic/synthetic_source.hpp"
 
 namespace rtd::test_support {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "tests/bench/rtd_bench/features_bench.hpp"
 #include "tests/bench/rtd_bench/transport/transport_bench.hpp"
 

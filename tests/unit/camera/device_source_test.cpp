@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "common/camera/live_uri.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "services/camera/core/live/device_modes.hpp"
 #include "tests/unit/camera/played_device.hpp"
 

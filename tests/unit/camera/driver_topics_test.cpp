@@ -5,8 +5,8 @@
 #include <zstd.h>
 
 #include "common/camera/frame_source.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/recording/recording.hpp"
-#include "common/camera/source_factory.hpp"
 #include "common/msg/imu.hpp"
 #include "common/ros_codec/wire.hpp"
 #include "services/camera/core/auxiliary_topics.hpp"

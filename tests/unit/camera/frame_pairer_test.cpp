@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "common/camera/folder/frame_lists.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/recording/emitter_switch.hpp"
 #include "common/camera/recording/frame_pairer.hpp"
-#include "common/camera/source_factory.hpp"
 #include "tests/unit/camera/image_bag.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 
 namespace rtd::camera {
 namespace {

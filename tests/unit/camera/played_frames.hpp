@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 
 namespace rtd::camera::test {
 

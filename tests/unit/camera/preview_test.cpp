@@ -4,7 +4,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "services/camera/core/left_out.hpp"
 #include "services/camera/core/preview.hpp"
 

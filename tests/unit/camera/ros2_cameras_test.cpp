@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "common/camera/live_uri.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/ros2_device_fixture.hpp"
 #include "tests/unit/camera/two_cameras.hpp"

@@ -10,7 +10,7 @@
 #include <functional>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "tests/unit/camera/played_frames.hpp"
 #include "tests/unit/camera/sequence_folder.hpp"
 

@@ -25,7 +25,7 @@ ACROSS_SERVICES = (
     ("services/maps/", "services/slam/map_file.hpp"),
 )
 MOST_ACROSS_SERVICES = 16
-MOST_BOTH_WAYS = 7
+MOST_BOTH_WAYS = 2
 
 
 def folder_of(path):

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/run_record/run_record.hpp"
 #include "common/vision/image_codecs.hpp"
 #include "services/slam/map_file.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/mcap/recording_file.hpp"
 #include "common/recordings/parts.hpp"
 #include "services/recorder/inspect/inspect_commands.hpp"

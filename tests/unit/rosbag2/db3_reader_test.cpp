@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <random>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/recordings/reader.hpp"
 #include "common/rosbag2/db3_reader.hpp"
 #include "tests/support/temporary_folder.hpp"

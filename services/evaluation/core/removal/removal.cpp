@@ -11,7 +11,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/io/folder_walk.hpp"
 #include "common/io/text.hpp"
 #include "common/vision/image_codecs.hpp"

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/geometry/pose_list.hpp"
 #include "common/msg/transform_eigen.hpp"

@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <ostream>
 
-#include "common/camera/source_factory.hpp"
+#include "common/camera/open/source_factory.hpp"
 #include "common/msg/engine_names.hpp"
 #include "common/service/command_line.hpp"
 #include "common/service/config.hpp"

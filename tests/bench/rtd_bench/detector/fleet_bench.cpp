@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "services/detector/fleet/fleet_config.hpp"
-#include "services/detector/fleet/fleet_pipeline.hpp"
+#include "services/detector/fleet_config.hpp"
+#include "services/detector/fleet_pipeline.hpp"
 #include "tests/bench/rtd_bench/bench_clock.hpp"
 #include "tests/bench/rtd_bench/detector/detector_bench.hpp"
 #include "tests/bench/rtd_bench/percentile.hpp"

@@ -9,7 +9,7 @@
 
 #include "services/detector/core/fleet/duty.hpp"
 #include "services/detector/core/fleet/fleet_queue.hpp"
-#include "services/detector/fleet/fleet_pipeline.hpp"
+#include "services/detector/fleet_pipeline.hpp"
 
 namespace rtd::detector {
 namespace {

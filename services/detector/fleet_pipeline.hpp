@@ -22,7 +22,7 @@
 #include "common/service/log.hpp"
 #include "common/vision/detection.hpp"
 #include "services/detector/core/fleet/fleet_queue.hpp"
-#include "services/detector/fleet/fleet_config.hpp"
+#include "services/detector/fleet_config.hpp"
 
 namespace rtd::detector {
 

@@ -2,42 +2,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "common/camera/frame_source.hpp"
-#include "common/camera/recording/recording.hpp"
+#include "common/camera/source_uri.hpp"
+#include "common/recordings/reader.hpp"
 
 namespace rtd::camera {
 
-/// "scheme:path?key=value&key=value".
-struct SourceUri {
-  std::string text, scheme, path;
-  std::map<std::string, std::string> parameters;
-};
-
-/// Throws SourceError naming the malformed part and the form expected.
-SourceUri parse_source_uri(const std::string& text);
-
 /// The topics of a recording that its frames, their calibration and ground truth are not made of; none for other
 /// sources. Throws SourceError.
-std::vector<RecordedTopic> auxiliary_topics(const std::string& uri);
+std::vector<recordings::RecordedTopic> auxiliary_topics(const std::string& uri);
 
 /// The recording that a source plays; null for other sources. Throws SourceError.
 std::unique_ptr<recordings::Reader> recording_of(const std::string& uri);
-
-/// The value of `tolerance_ms`, ns: more than 0, at most 1000 ms. Throws SourceError naming the URI.
-std::int64_t parse_tolerance_ns(const std::string& uri, const std::string& value);
-/// The value of a parameter that is 0 or 1. Throws SourceError naming URI and key.
-bool parse_flag(const std::string& uri, const std::string& key, const std::string& value);
-
-/// Adds the scheme that a path, with or without ?key=value, leaves out: a folder holds frames (tum: where it has TUM's
-/// lists) or a recording, FILE.bag, FILE.db3, FILE.mcap and FILE.oni are
-/// recordings. Everything else stays as it is.
-std::string complete_uri(const std::string& source);
 
 /// Opens a source by its URI:
 ///   folder:FOLDER[?calibration=FILE&intrinsics=fx,fy,cx,cy&depth_factor=1000&fps=30&tolerance_ms=20&masks=1]

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 
 #include <algorithm>
 #include <cmath>

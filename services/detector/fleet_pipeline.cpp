@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/fleet/fleet_pipeline.hpp"
+#include "services/detector/fleet_pipeline.hpp"
 
 #include <exception>
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "services/detector/core/decoders/decoder.hpp"
+#include "services/detector/core/decoder.hpp"
 
 namespace rtd::detector {
 namespace {

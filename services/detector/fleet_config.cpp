@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The RTD-SLAM Authors
 // SPDX-License-Identifier: Apache-2.0
-#include "services/detector/fleet/fleet_config.hpp"
+#include "services/detector/fleet_config.hpp"
 
 #include <fmt/format.h>
 
