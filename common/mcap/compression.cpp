@@ -21,18 +21,17 @@ std::size_t checked_zstd(std::size_t result) {
   return result;
 }
 
-ByteView compress_lz4(int level, ByteView data, Buffer& out) {
+ByteView compress_lz4(ByteView data, Buffer& out) {
   LZ4F_preferences_t preferences = LZ4F_INIT_PREFERENCES;
   preferences.frameInfo.contentSize = data.size();
   preferences.frameInfo.blockSizeID = LZ4F_max4MB;
-  preferences.compressionLevel = level;
   const std::span<std::byte> to = out.reset(LZ4F_compressFrameBound(data.size(), &preferences));
   return to.first(checked_lz4(LZ4F_compressFrame(to.data(), to.size(), data.data(), data.size(), &preferences)));
 }
 
-ByteView compress_zstd(int level, ByteView data, Buffer& out) {
+ByteView compress_zstd(ByteView data, Buffer& out) {
   const std::span<std::byte> to = out.reset(ZSTD_compressBound(data.size()));
-  return to.first(checked_zstd(ZSTD_compress(to.data(), to.size(), data.data(), data.size(), level)));
+  return to.first(checked_zstd(ZSTD_compress(to.data(), to.size(), data.data(), data.size(), ZSTD_CLEVEL_DEFAULT)));
 }
 
 using Lz4Context =
@@ -77,9 +76,9 @@ std::optional<Compression> compression_of(const std::string& name) {
   return std::nullopt;
 }
 
-ByteView compress(Compression compression, int level, ByteView data, Buffer& out) {
-  if (compression == Compression::kLz4) return compress_lz4(level, data, out);
-  if (compression == Compression::kZstd) return compress_zstd(level, data, out);
+ByteView compress(Compression compression, ByteView data, Buffer& out) {
+  if (compression == Compression::kLz4) return compress_lz4(data, out);
+  if (compression == Compression::kZstd) return compress_zstd(data, out);
   return data;
 }
 

@@ -15,9 +15,9 @@ enum class Compression { kNone, kLz4, kZstd };
 std::string name_of(Compression compression);
 std::optional<Compression> compression_of(const std::string& name);
 
-/// `data` as one LZ4 frame or one zstd frame, in `out`. `level`: 0 is the library's default, negative is faster.
+/// `data` as one LZ4 frame or one zstd frame, in `out`, at the library's usual level.
 /// kNone returns `data` itself. Throws std::runtime_error with the library's message.
-ByteView compress(Compression compression, int level, ByteView data, Buffer& out);
+ByteView compress(Compression compression, ByteView data, Buffer& out);
 
 /// Most bytes that `compressed_size` bytes can become, from how the formats code a run: a larger claim is false.
 std::uint64_t largest_uncompressed_size(Compression compression, std::uint64_t compressed_size);

@@ -6,7 +6,6 @@
 #include <array>
 #include <map>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "common/mcap/stream_reader.hpp"
@@ -26,7 +25,7 @@ class NewFile {
     options_.profile = header.profile;
     options_.library = header.library;
   }
-  void take(const StreamReader& /*part*/, const Schema& schema) { id_of(schema); }
+  void take(const StreamReader& /*part*/, const Schema& schema) { writer().add(schema); }
   void take(const StreamReader& part, const Channel& channel) { this->channel(part, channel.id); }
   void take(const StreamReader& part, const Message& message) {
     Message renamed = message;
@@ -61,27 +60,13 @@ class NewFile {
     Channel channel = part.channels().at(id);
     const auto schema = part.schemas().find(channel.schema_id);
     // A file must not name a schema that it does not have.
-    channel.schema_id = schema == part.schemas().end() ? SchemaId{0} : id_of(schema->second);
-    return channel_of_[id] = id_of(channel);
-  }
-  /// The id in the new file of a record that is equal but for its id; written if it is new.
-  SchemaId id_of(const Schema& schema) {
-    const auto [known, first] = schemas_.try_emplace({schema.name, schema.encoding, schema.data}, SchemaId{0});
-    if (first) known->second = writer().add(schema);
-    return known->second;
-  }
-  ChannelId id_of(const Channel& channel) {
-    const auto [known, first] = channels_.try_emplace(
-        {channel.topic, channel.schema_id, channel.message_encoding, channel.metadata}, ChannelId{0});
-    if (first) known->second = writer().add(channel);
-    return known->second;
+    channel.schema_id = schema == part.schemas().end() ? SchemaId{0} : writer().add(schema->second);
+    return channel_of_[id] = writer().add(std::move(channel));
   }
 
   io::ByteSink& sink_;
   WriterOptions options_;
   std::optional<Writer> writer_;
-  std::map<std::tuple<std::string, std::string, std::string>, SchemaId> schemas_;
-  std::map<std::tuple<std::string, SchemaId, std::string, std::map<std::string, std::string>>, ChannelId> channels_;
   std::set<std::pair<std::string, std::map<std::string, std::string>>> metadata_;  ///< name and content
   std::map<ChannelId, ChannelId> channel_of_;                                      ///< of the part in work
 };

@@ -9,23 +9,6 @@
 
 namespace rtd::mcap {
 
-void ChunkBuilder::add(const Message& message) {
-  MessageIndex& index = indexes_[message.channel_id];
-  index.channel_id = message.channel_id;
-  index.records.emplace_back(message.log_time, records_.size());
-  start_time_ = message_count_ == 0 ? message.log_time : std::min(start_time_, message.log_time);
-  end_time_ = std::max(end_time_, message.log_time);
-  ++message_count_;
-  append_record(records_, message);
-}
-
-void ChunkBuilder::clear() {
-  records_.clear();
-  indexes_.clear();
-  message_count_ = 0;
-  start_time_ = end_time_ = 0;
-}
-
 namespace {
 
 constexpr std::array kExtraData{std::byte{0x01}, std::byte{0xff}, std::byte{0xff}};
@@ -130,7 +113,7 @@ void Writer::write(const Schema& schema) {
   require(schema.id != 0, "schema \"" + schema.name + "\" has the id 0, which means \"no schema\"; use 1 to 65535");
   if (!is_new(schemas_, schema, "schema")) return;
   define(schema);
-  schemas_.emplace(schema.id, schema);
+  schema_ids_.emplace(meaning_of(schemas_.emplace(schema.id, schema).first->second), schema.id);
 }
 
 void Writer::write(const Channel& channel) {
@@ -140,16 +123,18 @@ void Writer::write(const Channel& channel) {
               ", which was not written before");
   if (!is_new(channels_, channel, "channel")) return;
   define(channel);
-  channels_.emplace(channel.id, channel);
+  channel_ids_.emplace(meaning_of(channels_.emplace(channel.id, channel).first->second), channel.id);
 }
 
 SchemaId Writer::add(Schema schema) {
+  if (const auto same = schema_ids_.find(meaning_of(schema)); same != schema_ids_.end()) return same->second;
   schema.id = lowest_free_id(schemas_);
   write(schema);
   return schema.id;
 }
 
 ChannelId Writer::add(Channel channel) {
+  if (const auto same = channel_ids_.find(meaning_of(channel)); same != channel_ids_.end()) return same->second;
   channel.id = lowest_free_id(channels_);
   write(channel);
   return channel.id;
@@ -165,9 +150,13 @@ void Writer::write(const Message& message) {
     append(record);
   } else {
     const std::uint64_t size = kFrameBytes + 22 + message.data.size();
-    if (chunk_.records().size() + size > options_.chunk_size) end_chunk();
+    if (chunk_.records.size() + size > options_.chunk_size) end_chunk();
     if (options_.self_contained_chunks) repeat_definitions(message.channel_id);
-    chunk_.add(message);
+    MessageIndex& index = chunk_.indexes[message.channel_id];
+    index.channel_id = message.channel_id;
+    index.records.emplace_back(message.log_time, chunk_.records.size());
+    append_record(chunk_.records, message);
+    chunk_.messages.count(message);
   }
   statistics_.count(message);
 }
@@ -198,11 +187,13 @@ void Writer::write(const Metadata& metadata) {
 
 void Writer::end_chunk() {
   require_open();
-  if (chunk_.message_count() == 0) return;  // what is defined so far waits for its first message
-  const ByteView records = chunk_.records();
+  if (chunk_.messages.message_count == 0) return;  // what is defined so far waits for its first message
+  const ByteView records = chunk_.records;
   const std::uint32_t crc = io::crc32(records);
-  const ByteView body = compress(options_.compression, options_.compression_level, records, compressed_);
-  Chunk chunk{chunk_.start_time(), chunk_.end_time(), records.size(), crc, name_of(options_.compression), {}};
+  const ByteView body = compress(options_.compression, records, compressed_);
+  const Statistics& messages = chunk_.messages;
+  Chunk chunk{
+      messages.message_start_time, messages.message_end_time, records.size(), crc, name_of(options_.compression), {}};
   Bytes head;
   append_record(head, chunk);
   // The records themselves go from where they are into the sink: only their lengths are put into the head.
@@ -212,7 +203,7 @@ void Writer::end_chunk() {
   ChunkIndex index = index_of(chunk, offset_, head.size() + body.size());
   Bytes tail;
   if (options_.use_message_index) {
-    for (const auto& [channel, entries] : chunk_.indexes()) {
+    for (const auto& [channel, entries] : chunk_.indexes) {
       index.message_index_offsets[channel] = index.chunk_start_offset + index.chunk_length + tail.size();
       append_record(tail, entries, padding());
     }
@@ -221,16 +212,14 @@ void Writer::end_chunk() {
   append(head, body, options_.compression == Compression::kNone ? crc : io::crc32(body), tail);
   chunk_indexes_.push_back(std::move(index));
   ++statistics_.chunk_count;
-  chunk_.clear();
-  defined_in_chunk_.clear();
+  clear_chunk();
 }
 
 void Writer::close() {
   if (closed_) return;
   end_chunk();
-  append(chunk_.records());  // defined, but never used: no chunk, as there are readers that refuse one without messages
-  chunk_.clear();
-  defined_in_chunk_.clear();
+  append(chunk_.records);  // defined, but never used: no chunk, as there are readers that refuse one without messages
+  clear_chunk();
   Bytes end;
   append_record(end, DataEnd{data_crc_});
   SummarySection summary(end, offset_, padding());
@@ -258,7 +247,7 @@ void Writer::require_open() const {
 template <class R>
 void Writer::define(const R& record) {
   if (options_.use_chunks) {
-    chunk_.add(record);
+    append_record(chunk_.records, record);
   } else {
     Bytes bytes;
     append_record(bytes, record, padding());
@@ -275,8 +264,16 @@ void Writer::define(const R& record) {
 void Writer::repeat_definitions(ChannelId id) {
   if (!defined_in_chunk_.insert(id).second) return;
   const Channel& channel = channels_.at(id);
-  if (channel.schema_id != 0) chunk_.add(schemas_.at(channel.schema_id));
-  chunk_.add(channel);
+  if (channel.schema_id != 0) append_record(chunk_.records, schemas_.at(channel.schema_id));
+  append_record(chunk_.records, channel);
+}
+
+/// Keeps the memory of the records.
+void Writer::clear_chunk() {
+  chunk_.records.clear();
+  chunk_.indexes.clear();
+  chunk_.messages = {};
+  defined_in_chunk_.clear();
 }
 
 ByteView Writer::padding() const {

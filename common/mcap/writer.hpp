@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "common/io/byte_sink.hpp"
 #include "common/mcap/codec.hpp"
@@ -10,36 +13,19 @@
 
 namespace rtd::mcap {
 
-/// The records of one chunk before it is compressed, and their index.
-class ChunkBuilder {
- public:
-  void add(const Schema& schema) { append_record(records_, schema); }
-  void add(const Channel& channel) { append_record(records_, channel); }
-  void add(const Message& message);
-
-  bool empty() const { return records_.empty(); }
-  std::uint64_t message_count() const { return message_count_; }
-  ByteView records() const { return records_; }
-  Timestamp start_time() const { return start_time_; }  ///< of its messages; 0 without any
-  Timestamp end_time() const { return end_time_; }
-  /// The entries of a channel in the order of the messages, as the conformance set has them.
-  const std::map<ChannelId, MessageIndex>& indexes() const { return indexes_; }
-  /// Keeps the memory.
-  void clear();
-
- private:
-  Bytes records_;
-  std::map<ChannelId, MessageIndex> indexes_;
-  std::uint64_t message_count_ = 0;
-  Timestamp start_time_ = 0, end_time_ = 0;
-};
+/// What two schemas, and two channels, with the same meaning have in common: all but their ids.
+inline auto meaning_of(const Schema& schema) {
+  return std::tie(schema.name, schema.encoding, schema.data);
+}
+inline auto meaning_of(const Channel& channel) {
+  return std::tie(channel.topic, channel.schema_id, channel.message_encoding, channel.metadata);
+}
 
 /// The defaults make a file that every reader can open by index and check in full.
 struct WriterOptions {
   std::string profile;               ///< e.g. "ros2"
   std::string library = "rtd-slam";  ///< who wrote it, free text
   Compression compression = Compression::kNone;
-  int compression_level = 0;           ///< 0: the library's default
   std::uint64_t chunk_size = 1 << 20;  ///< bytes before compression; a longer message has a chunk for itself
   /// Repeats the schemas and channels that a chunk uses inside it: a chunk can then be read when all others are lost.
   bool self_contained_chunks = false;
@@ -71,11 +57,14 @@ class Writer {
  public:
   /// Begins the file. `sink` must be empty and outlive the writer.
   explicit Writer(io::ByteSink& sink, WriterOptions options = {});
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
 
   /// Writes a record with the id that it has; the same id again must come with the same content and is then ignored.
   void write(const Schema& schema);
   void write(const Channel& channel);
-  /// Gives the lowest free id from 1 on (whatever id the argument has) and writes the record.
+  /// The id of the record that was written with this content, whatever id the argument has; else writes it with the
+  /// lowest free one from 1 on.
   SchemaId add(Schema schema);
   ChannelId add(Channel channel);
 
@@ -87,10 +76,10 @@ class Writer {
 
   /// Puts the open chunk, if it has a message, and its index into the sink with one append().
   void end_chunk();
-  std::uint64_t open_chunk_bytes() const { return chunk_.records().size(); }
-  std::uint64_t open_chunk_messages() const { return chunk_.message_count(); }
+  std::uint64_t open_chunk_bytes() const { return chunk_.records.size(); }
+  std::uint64_t open_chunk_messages() const { return chunk_.messages.message_count; }
   /// What is in the sink. After `w = written()`, a sink.sync() that returns at least w.offset made w.messages durable.
-  Written written() const { return {offset_, statistics_.message_count - chunk_.message_count()}; }
+  Written written() const { return {offset_, statistics_.message_count - chunk_.messages.message_count}; }
   const Statistics& statistics() const { return statistics_; }  ///< with the open chunk
 
   /// Ends the file: open chunk, DataEnd, summary, footer. Writing more is an error then; close() again does nothing.
@@ -99,10 +88,20 @@ class Writer {
   void split(io::ByteSink& next);
 
  private:
+  /// The records of a chunk before it is compressed.
+  struct OpenChunk {
+    Bytes records;
+    std::map<ChannelId, MessageIndex> indexes;  ///< in the order of the messages, as the conformance set has them
+    Statistics messages;
+  };
+  template <class Id, class R>
+  using Ids = std::map<decltype(meaning_of(std::declval<const R&>())), Id>;
+
   void begin();
   void require_open() const;
   template <class R>
   void define(const R& record);
+  void clear_chunk();
   void repeat_definitions(ChannelId id);
   ByteView padding() const;
   void append(ByteView record);
@@ -112,7 +111,9 @@ class Writer {
   WriterOptions options_;
   std::map<SchemaId, Schema> schemas_;
   std::map<ChannelId, Channel> channels_;
-  ChunkBuilder chunk_;
+  Ids<SchemaId, Schema> schema_ids_;  ///< the keys are those records
+  Ids<ChannelId, Channel> channel_ids_;
+  OpenChunk chunk_;
   std::set<ChannelId> defined_in_chunk_;
   Buffer compressed_;
   Statistics statistics_;

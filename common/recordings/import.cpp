@@ -45,17 +45,8 @@ void Import::add(const fs::path& file, Form form, const std::string& name, const
 }
 
 mcap::ChannelId Import::channel(const mcap::Schema& schema, mcap::Channel channel) {
-  channel.schema_id = 0;
-  if (!schema.name.empty()) {
-    const Definition definition{schema.name, schema.encoding, schema.data};
-    const auto [known, first] = schemas_.try_emplace(definition, 0);
-    if (first) known->second = writer_.add(schema);
-    channel.schema_id = known->second;
-  }
-  const auto [known, first] =
-      channels_.try_emplace({channel.topic, channel.schema_id, channel.message_encoding, channel.metadata}, 0);
-  if (first) known->second = writer_.add(std::move(channel));
-  return known->second;
+  channel.schema_id = schema.name.empty() ? mcap::SchemaId{0} : writer_.add(schema);
+  return writer_.add(std::move(channel));
 }
 
 void Import::write(mcap::Message message, const std::string& topic) {

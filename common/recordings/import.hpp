@@ -4,9 +4,7 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "common/io/unpacked.hpp"
@@ -35,8 +33,6 @@ class Import {
   void note(const std::string& damage) { damages_.push_back(damage); }
 
  private:
-  using Definition = std::tuple<std::string, std::string, std::string>;  ///< name, encoding, text
-
   void add_mcap(const std::filesystem::path& file, const std::string& name, const Share& progress);
   void add_indexed(const std::filesystem::path& file, Form form, const std::string& name, const Share& progress);
   mcap::ChannelId channel(const mcap::Schema& schema, mcap::Channel channel);
@@ -44,9 +40,6 @@ class Import {
 
   mcap::Writer writer_;
   const bool packed_messages_;
-  std::map<Definition, mcap::SchemaId> schemas_;
-  std::map<std::tuple<std::string, mcap::SchemaId, std::string, std::map<std::string, std::string>>, mcap::ChannelId>
-      channels_;
   io::UnpackLimit unpack_limit_{0};  ///< of the messages of one file
   std::vector<std::string> damages_;
 };

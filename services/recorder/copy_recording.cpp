@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <set>
-#include <tuple>
 #include <utility>
 
 #include "common/io/atomic_file.hpp"
@@ -110,7 +109,7 @@ class Copy {
       } else if (schema.data.empty()) {
         describe(schema);
       }
-      copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : id_of(schema);
+      copy.schema_id = schema.name.empty() ? mcap::SchemaId{0} : writer_.add(schema);
       return Output{writer_.add(std::move(copy)), std::move(to_cdr), blur_topic(channel, schema.name)};
     } catch (const ros::DefinitionError& error) {
       result_.left_out[channel.topic] = error.what();
@@ -129,11 +128,6 @@ class Copy {
     const ros2::TypeDefinition definition = ros2::definition_of(ros2::dds_type(schema.name));
     if (definition.known()) schema = {0, definition.name, definition.encoding, definition.text};
   }
-  mcap::SchemaId id_of(const mcap::Schema& schema) {
-    const auto [known, first] = schemas_.try_emplace({schema.name, schema.encoding, schema.data}, mcap::SchemaId{0});
-    if (first) known->second = writer_.add(schema);
-    return known->second;
-  }
   void copy_rest() {
     for (const mcap::AttachmentIndex& index : reader_.summary().attachment_indexes) {
       if (const auto attachment = reader_.attachment(index)) writer_.write(*attachment);
@@ -151,7 +145,6 @@ class Copy {
   recorder::PeopleBlur* const people_;
   CopiedRecording& result_;
   std::map<mcap::ChannelId, std::optional<Output>> outputs_;
-  std::map<std::tuple<std::string, std::string, std::string>, mcap::SchemaId> schemas_;
   std::set<std::string> topics_;
   std::uint64_t bytes_ = 0;
 };

@@ -188,13 +188,10 @@ mcap::ChannelId Recording::channel(std::size_t topic) {
   if (const auto known = channels_.find(topic); known != channels_.end()) return known->second;
   const RecordedTopic described = book_.topic(topic);
   const ros2::TypeDefinition& type = described.type;
-  auto schema = schemas_.find(type.name);
-  if (schema == schemas_.end()) {
-    // rosbag2 takes the type name from the schema, so an unknown type has one too, without text.
-    schema = schemas_.emplace(type.name, writer_.add(mcap::Schema{0, type.name, type.encoding, type.text})).first;
-  }
+  // rosbag2 takes the type name from the schema, so an unknown type has one too, without text.
+  const mcap::SchemaId schema = writer_.add(mcap::Schema{0, type.name, type.encoding, type.text});
   const mcap::ChannelId id = writer_.add(mcap::Channel{
-      0, schema->second, described.name, "cdr", {{"offered_qos_profiles", bus::offered_qos_text(described.offered)}}});
+      0, schema, described.name, "cdr", {{"offered_qos_profiles", bus::offered_qos_text(described.offered)}}});
   channels_.emplace(topic, id);
   return id;
 }

@@ -109,7 +109,6 @@ class Recording {
   std::shared_ptr<io::ByteSink> sink_;
   mcap::Writer writer_;
   std::map<std::size_t, mcap::ChannelId> channels_;
-  std::map<std::string, mcap::SchemaId> schemas_;
   std::vector<std::uint64_t> messages_;   ///< by topic, with the open chunk
   std::vector<std::uint64_t> logged_ns_;  ///< by topic, of its last message
   std::vector<FileSummary> ended_files_;

@@ -156,7 +156,7 @@ TEST(BadInput, decompression_bomb_is_bounded_by_what_the_format_can_do) {
   Buffer buffer;
   const std::string zeros(1 << 20, '\0');
   for (const Compression compression : {Compression::kLz4, Compression::kZstd}) {
-    const ByteView packed = compress(compression, 0, io::bytes_of(zeros), buffer);
+    const ByteView packed = compress(compression, io::bytes_of(zeros), buffer);
     EXPECT_LE(zeros.size(), largest_uncompressed_size(compression, packed.size()));
   }
 }
