@@ -80,20 +80,6 @@ void prepare(const OutputFiles& files, bool force) {
   }
 }
 
-/// The result of a recording.
-struct RecordingReport {
-  std::vector<std::string> names;  ///< of the files, in the folder
-  std::string folder;
-  std::vector<FileSummary> files;
-  std::vector<RecordedTopic> topics;
-  TopicCounts totals;  ///< of the topics
-  std::uint64_t acknowledged_bytes = 0;
-  double duration_s = 0;
-  std::string failure;                          ///< why it ended early; empty: it was stopped
-  std::map<std::string, std::uint64_t> people;  ///< images by what became of them; empty: all are as they were
-  bool partial() const { return !failure.empty() || totals.lost() > 0; }
-};
-
 nlohmann::json to_json(const RecordedTopic& topic) {
   return {{"name", topic.name},
           {"type", topic.type.name},
@@ -103,28 +89,6 @@ nlohmann::json to_json(const RecordedTopic& topic) {
           {"acknowledged", topic.counts.acknowledged},
           {"lost_in_transit", topic.counts.lost_in_transit},
           {"lost_in_queue", topic.counts.lost_in_queue}};
-}
-
-std::string report_json(const RecordingReport& report) {
-  auto files = nlohmann::json::array(), topics = nlohmann::json::array();
-  std::uint64_t bytes = 0;
-  for (std::size_t i = 0; i < report.files.size(); ++i) {
-    const FileSummary& file = report.files[i];
-    files.push_back({{"name", report.names[i]}, {"bytes", file.bytes}, {"messages", file.messages}});
-    bytes += file.bytes;
-  }
-  for (const RecordedTopic& topic : report.topics) topics.push_back(to_json(topic));
-  return service::json_text(nlohmann::json{{"folder", report.folder},
-                                           {"duration_s", report.duration_s},
-                                           {"acknowledged_bytes", report.acknowledged_bytes},
-                                           {"partial", report.partial()},
-                                           {"failure", report.failure},
-                                           {"messages", report.totals.written},
-                                           {"lost", report.totals.lost()},
-                                           {"bytes", bytes},
-                                           {"files", files},
-                                           {"people", report.people},
-                                           {"topics", topics}});
 }
 
 /// The losses, as metadata of the file.
@@ -344,31 +308,45 @@ void RecordingSession::write_metadata(const std::string& text) const {
       files_.metadata().string(), cause);
 }
 
+nlohmann::json RecordingSession::report() const {
+  auto files = nlohmann::json::array(), topics = nlohmann::json::array();
+  for (const FileSummary& file : recording_->files())
+    files.push_back(
+        {{"name", files_.file(files.size()).filename().string()}, {"bytes", file.bytes}, {"messages", file.messages}});
+  for (const RecordedTopic& topic : book_.topics()) topics.push_back(to_json(topic));
+  const TopicCounts totals = book_.totals();
+  return {{"folder", files_.folder().string()},
+          {"duration_s", static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9},
+          {"acknowledged_bytes", sync_->acknowledged().bytes},
+          {"partial", is_partial(totals)},
+          {"failure", failure_},
+          {"messages", totals.written},
+          {"lost", totals.lost()},
+          {"bytes", recording_->bytes()},
+          {"files", files},
+          {"people", blur_line_ ? blur_line_->people().counts() : std::map<std::string, std::uint64_t>()},
+          {"topics", topics}};
+}
+
 service::ExitCode RecordingSession::conclude() {
-  const Acknowledged acknowledged = sync_->acknowledged();
-  book_.count_acknowledged(acknowledged.messages);
-  RecordingReport report;
-  report.folder = files_.folder();
-  report.files = recording_->files();
-  report.topics = book_.topics();
-  report.totals = book_.totals();
-  report.acknowledged_bytes = acknowledged.bytes;
-  report.duration_s = static_cast<double>(service::monotonic_ns() - started_ns_) * 1e-9;
-  report.failure = failure_;
-  if (blur_line_) report.people = blur_line_->people().counts();
-  for (std::size_t i = 0; i < report.files.size(); ++i) report.names.push_back(files_.file(i).filename());
-  write_metadata(bag_metadata_text(report.names, report.files, report.topics));
+  book_.count_acknowledged(sync_->acknowledged().messages);
+  const std::vector<FileSummary> files = recording_->files();
+  const std::vector<RecordedTopic> topics = book_.topics();
+  const TopicCounts totals = book_.totals();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < files.size(); ++i) names.push_back(files_.file(i).filename());
+  write_metadata(bag_metadata_text(names, files, topics));
   if (interactive_) io::rewrite_terminal_line("");
-  for (const RecordedTopic& topic : report.topics) {
+  for (const RecordedTopic& topic : topics) {
     SPDLOG_INFO("event=topic topic={} messages={} lost_in_transit={} lost_in_queue={}", topic.name,
                 topic.counts.written, topic.counts.lost_in_transit, topic.counts.lost_in_queue);
   }
-  if (blur_line_) log_people(report.people);
+  if (blur_line_) log_people(blur_line_->people().counts());
   if (!failure_.empty()) SPDLOG_ERROR("event=ended_early cause=\"{}\"", failure_);
-  SPDLOG_INFO("event=summary files={} messages={} acknowledged={} bytes={} lost={}", report.files.size(),
-              report.totals.written, report.totals.acknowledged, recording_->bytes(), report.totals.lost());
-  if (config_.json) std::cout << report_json(report) << '\n';
-  return report.partial() ? service::kPartialLoss : service::kOk;
+  SPDLOG_INFO("event=summary files={} messages={} acknowledged={} bytes={} lost={}", files.size(), totals.written,
+              totals.acknowledged, recording_->bytes(), totals.lost());
+  if (config_.json) std::cout << service::json_text(report()) << '\n';
+  return is_partial(totals) ? service::kPartialLoss : service::kOk;
 }
 
 }  // namespace rtd::recorder

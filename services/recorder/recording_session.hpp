@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -105,6 +106,9 @@ class RecordingSession {
   void show_progress(std::int64_t now_ns, const TopicCounts& totals);
   void watch_disk();
   void write_metadata(const std::string& text) const;
+  /// Something was lost, or it ended early.
+  bool is_partial(const TopicCounts& totals) const { return !failure_.empty() || totals.lost() > 0; }
+  nlohmann::json report() const;
   service::ExitCode conclude();
 
   const ServiceConfig config_;
