@@ -50,14 +50,13 @@ nlohmann::ordered_json list_json(const std::vector<TopicRow>& rows);
 std::string rate_text(const std::vector<TopicRow>& rows, double seconds);
 nlohmann::ordered_json rate_json(const std::vector<TopicRow>& rows, double seconds);
 
-/// A message (common/ros2/message_json.hpp) as YAML: one line per field, arrays of values in one line, "---" at
-/// the end.
-std::string message_text(const nlohmann::ordered_json& message);
-
 enum class Detail {
   kReadable,  ///< for people: times as dates, six digits behind the point, "[36 x 0]" for an array of one value
   kAll,
 };
-std::string message_text(const nlohmann::ordered_json& message, Detail detail);
+
+/// A message (common/ros2/message_json.hpp) as YAML: one line per field, arrays of values in one line, "---" at
+/// the end.
+std::string message_text(const nlohmann::ordered_json& message, Detail detail = Detail::kAll);
 
 }  // namespace rtd::topics
