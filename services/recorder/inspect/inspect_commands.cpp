@@ -65,50 +65,6 @@ void require_recording(const std::string& path) {
   throw mcap::RecordingFileError(path + " is " + (other.empty() ? "not a recording" : other) + "; " + kCompared);
 }
 
-void add_damages(RecordingReport& report, const std::vector<std::string>& damages) {
-  for (const std::string& damage : damages) {
-    ++report.problem_count;
-    report.data_lost = true;
-    report.problems.push_back({mcap::ProblemKind::kDamagedRecord, 0, damage, "it is left out", true});
-  }
-}
-
-struct ReadChannel {
-  std::vector<mcap::Timestamp> times_ns;
-  std::uint64_t bytes = 0;
-};
-
-std::map<std::string, ReadChannel> read_messages(Reader& recording) {
-  std::map<std::string, ReadChannel> channels;
-  std::vector<std::string> names;
-  for (const RecordedTopic& topic : recording.topics()) {
-    channels.try_emplace(topic.name);
-    names.push_back(topic.name);
-  }
-  recording.play(names);
-  while (const std::optional<RecordedMessage> message = recording.next()) {
-    ReadChannel& channel = channels[message->topic];
-    channel.times_ns.push_back(static_cast<mcap::Timestamp>(std::max<std::int64_t>(0, message->recorded_ns)));
-    channel.bytes += message->bytes.size();
-  }
-  return channels;
-}
-
-void add_channel(RecordingReport& report, const std::string& topic, const std::string& type, const ReadChannel& read) {
-  ChannelReport channel;
-  channel.channel.topic = topic;
-  channel.type = type;
-  channel.timing = timing_of(read.times_ns);
-  channel.payload_bytes = read.bytes;
-  if (channel.timing.messages > 0) {
-    report.start_ns =
-        report.messages == 0 ? channel.timing.first_ns : std::min(report.start_ns, channel.timing.first_ns);
-    report.end_ns = std::max(report.end_ns, channel.timing.last_ns);
-  }
-  report.messages += channel.timing.messages;
-  report.channels.push_back(std::move(channel));
-}
-
 }  // namespace
 
 CLI::App* add_diff_command(CLI::App& parent, DiffRequest& request) {
@@ -153,11 +109,27 @@ std::optional<RecordingReport> report_on_other_format(const std::filesystem::pat
   report.format = form == Form::kBag ? "ROS 1 bag" : "rosbag2 sqlite3";
   report.file_bytes = std::filesystem::file_size(file);
   report.read_all = true;
-  const std::map<std::string, ReadChannel> channels = read_messages(*recording);
-  std::map<std::string, std::string> types;
-  for (const RecordedTopic& topic : recording->topics()) types[topic.name] = topic.type;
-  for (const auto& [topic, channel] : channels) add_channel(report, topic, types[topic], channel);
-  add_damages(report, recording->take_damages());
+  std::map<std::string, ChannelReport> channels;
+  std::map<std::string, std::vector<mcap::Timestamp>> times_ns;
+  std::vector<std::string> names;
+  for (const RecordedTopic& topic : recording->topics()) {
+    ChannelReport& channel = channels[topic.name];
+    channel.channel.topic = topic.name;
+    channel.type = topic.type;
+    channel.payload_bytes = 0;
+    names.push_back(topic.name);
+  }
+  recording->play(names);
+  while (const std::optional<RecordedMessage> message = recording->next()) {
+    times_ns[message->topic].push_back(static_cast<mcap::Timestamp>(std::max<std::int64_t>(0, message->recorded_ns)));
+    *channels.at(message->topic).payload_bytes += message->bytes.size();
+  }
+  for (auto& [topic, channel] : channels) {
+    channel.timing = timing_of(std::move(times_ns[topic]));
+    report.channels.push_back(std::move(channel));
+  }
+  report.count_messages();
+  for (const std::string& damage : recording->take_damages()) report.add_damage(damage);
   return report;
 }
 
@@ -180,7 +152,7 @@ int run_info(const InfoOptions& options, std::ostream& out, std::ostream& err) {
       report.format = opened.imported;
       report.file_bytes = size_of(options.file);
     }
-    add_damages(report, opened.damages);
+    for (const std::string& damage : opened.damages) report.add_damage(damage);
     return print_report(report);
   });
 }

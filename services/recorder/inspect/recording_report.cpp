@@ -52,15 +52,10 @@ void add_channels(RecordingReport& report, Collected& collected, const std::map<
       entry.sequences = read.sequences;
     }
     entry.timing = timing_of(std::move(read.times_ns));
-    report.messages += entry.timing.messages;
     report.channels.push_back(std::move(entry));
   }
   std::ranges::stable_sort(report.channels, {}, [](const ChannelReport& entry) { return entry.channel.topic; });
-  for (const ChannelReport& entry : report.channels) {
-    if (entry.timing.messages == 0) continue;
-    report.start_ns = report.end_ns == 0 ? entry.timing.first_ns : std::min(report.start_ns, entry.timing.first_ns);
-    report.end_ns = std::max(report.end_ns, entry.timing.last_ns);
-  }
+  report.count_messages();
 }
 
 void add_chunk(RecordingReport& report, const std::string& compression, std::uint64_t bytes, std::uint64_t uncompressed,
@@ -210,6 +205,22 @@ std::map<std::string, std::string> RecordingReport::losses() const {
   constexpr char kLosses[] = "rtd:losses";
   const auto found = std::ranges::find(metadata, kLosses, &mcap::Metadata::name);
   return found == metadata.end() ? std::map<std::string, std::string>{} : found->metadata;
+}
+
+void RecordingReport::count_messages() {
+  for (const ChannelReport& channel : channels) {
+    const Timing& timing = channel.timing;
+    if (timing.messages == 0) continue;
+    start_ns = messages == 0 ? timing.first_ns : std::min(start_ns, timing.first_ns);
+    end_ns = std::max(end_ns, timing.last_ns);
+    messages += timing.messages;
+  }
+}
+
+void RecordingReport::add_damage(const std::string& damage) {
+  ++problem_count;
+  data_lost = true;
+  problems.push_back({mcap::ProblemKind::kDamagedRecord, 0, damage, "it is left out", true});
 }
 
 bool RecordingReport::damaged() const {

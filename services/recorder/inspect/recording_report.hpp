@@ -91,6 +91,10 @@ struct RecordingReport {
   std::uint64_t problem_count = 0;  ///< including repeated and unlisted ones
   bool data_lost = false;           ///< something in the file, or missing from it, cannot be read
 
+  /// Fills in what is known of all channels once they are there.
+  void count_messages();
+  /// A piece that could not be read, in the words of the reader.
+  void add_damage(const std::string& damage);
   /// Something in the file was changed or is missing. A file that is still being written may end anywhere.
   bool damaged() const;
 };
