@@ -47,7 +47,7 @@ class BoundedQueue {
   }
 
   /// Like pop(), but gives up after the timeout.
-  std::optional<T> pop_for(std::chrono::milliseconds timeout) {
+  std::optional<T> pop_for(std::chrono::nanoseconds timeout) {
     std::unique_lock lock(mutex_);
     ready_.wait_for(lock, timeout, [this] { return closed_ || !items_.empty(); });
     return take(lock);

@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <utility>
 
 namespace rtd::replay {
@@ -19,30 +18,6 @@ bool in_foreground() {
 }
 
 }  // namespace
-
-void Inbox::post(Event event) {
-  const std::lock_guard lock(mutex_);
-  if (closed_) return;
-  events_.push_back(std::move(event));
-  posted_.notify_one();
-}
-
-void Inbox::close() {
-  std::deque<Event> dropped;
-  const std::lock_guard lock(mutex_);
-  closed_ = true;
-  dropped.swap(events_);
-}
-
-std::optional<Event> Inbox::take_until(std::int64_t deadline_ns) {
-  const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(deadline_ns)};
-  std::unique_lock lock(mutex_);
-  posted_.wait_until(lock, deadline, [this] { return !events_.empty(); });
-  if (events_.empty()) return std::nullopt;
-  Event event = std::move(events_.front());
-  events_.pop_front();
-  return event;
-}
 
 Keyboard::Keyboard(std::function<void(Command)> on_command) : on_command_(std::move(on_command)) {
   if (!in_foreground() || tcgetattr(STDIN_FILENO, &before_) != 0) return;

@@ -34,6 +34,7 @@ constexpr std::chrono::milliseconds kLook{20};
 constexpr std::chrono::milliseconds kSettle{200};    // a reader that has matched here may not have matched us yet
 constexpr std::chrono::milliseconds kFarewell{300};  // time for the last heartbeats to arrive
 constexpr int kLastAcknowledgementMs = 2000;
+constexpr std::size_t kMostEvents = 4096;  // that wait for the player
 constexpr char kTrackingTopic[] = "rtd/tracking";
 
 std::int64_t to_ns(double seconds) {
@@ -86,7 +87,10 @@ void ReplayService::add_options(CLI::App& app, std::vector<service::GivenOption>
 }
 
 ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
-    : config_(config), runtime_(runtime), window_(window_of(config, runtime.pace)), inbox_(std::make_shared<Inbox>()) {
+    : config_(config),
+      runtime_(runtime),
+      window_(window_of(config, runtime.pace)),
+      inbox_(std::make_shared<Inbox>(kMostEvents, concurrency::Overflow::kDropOldest)) {
   if (config_.file.empty()) throw ConfigError("name a recording: rtd replay FILE (replay.file)");
   if (window_ > 0 && config_.lockstep.empty()) config_.lockstep = kTrackingTopic;
   try {
@@ -94,7 +98,7 @@ ReplayService::ReplayService(const Config& config, service::Runtime& runtime)
   } catch (const mcap::RecordingFileError& error) {
     throw ConfigError(error.what());
   }
-  runtime_.stop.on_stop([inbox = inbox_] { inbox->post(Command::kStop); });
+  runtime_.stop.on_stop([inbox = inbox_] { inbox->push(Command::kStop); });
 }
 
 void ReplayService::open() {
@@ -230,7 +234,7 @@ service::ExitCode ReplayService::run() {
     return runtime_.stop.stop_requested() ? service::kOk : service::kRunFailed;
   runtime_.heartbeat.set_state(msg::ServiceState::kRunning);
   commands_ = std::make_unique<ReplayCommands>(runtime_.bus, RecordedSpan{first_ns_, start_ns_, end_ns_},
-                                               [inbox = inbox_](Request request) { inbox->post(std::move(request)); });
+                                               [inbox = inbox_](Request request) { inbox->push(std::move(request)); });
   return play();
 }
 
@@ -280,7 +284,7 @@ bool ReplayService::subscribe_to_answers() {
       bus::RawHandlers handlers;
       const bool numbered = paced_->carries_seq && writer.topic.type == "rtd_msgs::msg::dds_::TrackingResult_";
       handlers.on_sample = [inbox = inbox_, numbered](const bus::RawSample& sample) {
-        inbox->post(Answer{numbered ? std::optional(seq_in(sample.cdr())) : std::nullopt});
+        inbox->push(Answer{numbered ? std::optional(seq_in(sample.cdr())) : std::nullopt});
       };
       answers_ = bus_->reader(writer.topic, {.reliable = writer.qos.reliable}, std::move(handlers));
       return true;
@@ -305,7 +309,7 @@ bool ReplayService::wait_for_readers() {
 
 service::ExitCode ReplayService::play() {
   line_ = std::make_unique<StatusLine>(start_ns_, end_ns_);
-  const Keyboard keyboard([inbox = inbox_](Command command) { inbox->post(command); });
+  const Keyboard keyboard([inbox = inbox_](Command command) { inbox->push(command); });
   std::set<mcap::ChannelId> wanted;
   for (const mcap::Channel* channel : channels_) wanted.insert(channel->id);
   MessageFeed feed(*reader_,
@@ -325,7 +329,9 @@ service::ExitCode ReplayService::play() {
   if (config_.clock_hz > 0) options.clock_period_ns = to_ns(1 / config_.clock_hz);
   Player player(feed, *this, options);
   const PlayOutcome outcome = player.run();
-  inbox_->close();  // who still waits for an answer does so in vain
+  inbox_->close();
+  while (inbox_->pop()) {  // who still waits for an answer does so in vain
+  }
   line_.reset();
   return finish(player, outcome);
 }

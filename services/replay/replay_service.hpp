@@ -100,7 +100,9 @@ class ReplayService final : public PlayerHost {
   service::ExitCode run();
 
   std::int64_t now_ns() override;
-  std::optional<Event> wait_until(std::int64_t deadline_ns) override { return inbox_->take_until(deadline_ns); }
+  std::optional<Event> wait_until(std::int64_t deadline_ns) override {
+    return inbox_->pop_for(std::chrono::nanoseconds(deadline_ns - now_ns()));
+  }
   void send(const PlayedMessage& message) override { outputs_->send(message); }
   void send_clock(std::int64_t recorded_ns) override { outputs_->send_clock(recorded_ns); }
   std::optional<std::uint64_t> paced_seq(const PlayedMessage& message) override;
