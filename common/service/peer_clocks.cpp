@@ -22,32 +22,8 @@ constexpr double kNotableMs = 10;  // above, latencies across hosts and stamps o
 }  // namespace
 
 std::optional<double> find_metric(const msg::ServiceStatus& status, const std::string& name) {
-  const auto found = std::find_if(status.metrics.begin(), status.metrics.end(),
-                                  [&](const msg::Metric& metric) { return metric.name == name; });
+  const auto found = std::ranges::find(status.metrics, name, &msg::Metric::name);
   return found == status.metrics.end() ? std::nullopt : std::optional(found->value);
-}
-
-void ClockOffsets::received(const std::string& peer, std::int64_t stamp_ns, std::int64_t arrival_ns) {
-  Least& least = peers_[peer];
-  const std::int64_t age_ns = arrival_ns - least.began_ns;
-  if (age_ns > kWindowNs || age_ns < 0) {  // negative: our clock was set back
-    least.before_ns = age_ns > 0 && age_ns < 2 * kWindowNs ? least.now_ns : std::numeric_limits<std::int64_t>::max();
-    least.now_ns = std::numeric_limits<std::int64_t>::max();
-    least.began_ns = arrival_ns;
-  }
-  least.now_ns = std::min(least.now_ns, arrival_ns - stamp_ns);
-}
-
-std::optional<double> ClockOffsets::measured_ms(const std::string& peer) const {
-  const auto found = peers_.find(peer);
-  if (found == peers_.end()) return std::nullopt;
-  return static_cast<double>(found->second.value_ns()) / kNsPerMs;
-}
-
-std::optional<ClockOffset> ClockOffsets::offset(const std::string& peer, double peer_measured_ms) const {
-  const std::optional<double> own_ms = measured_ms(peer);
-  if (!own_ms) return std::nullopt;
-  return ClockOffset{(peer_measured_ms - *own_ms) / 2, peer_measured_ms + *own_ms};
 }
 
 PeerClocks::PeerClocks(std::string own_service, double own_host_id)
@@ -62,16 +38,27 @@ double PeerClocks::this_host_id() {
   return id;
 }
 
+double PeerClocks::measured_ms(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
+  constexpr std::int64_t kNone = std::numeric_limits<std::int64_t>::max();
+  Least& least = least_[status.service];
+  const std::int64_t age_ns = arrival_ns - least.began_ns;
+  if (age_ns > kWindowNs || age_ns < 0) {  // negative: our clock was set back
+    least = {arrival_ns, kNone, age_ns > 0 && age_ns < 2 * kWindowNs ? least.now_ns : kNone};
+  }
+  least.now_ns = std::min(least.now_ns, arrival_ns - status.stamp_ns);
+  return static_cast<double>(std::min(least.now_ns, least.before_ns)) / kNsPerMs;
+}
+
 std::vector<msg::Metric> PeerClocks::received(const msg::ServiceStatus& status, std::int64_t arrival_ns) {
   const std::optional<double> host_id = find_metric(status, metric::kHostId);
   if (!host_id || *host_id == own_host_id_) return {};
-  clocks_.received(status.service, status.stamp_ns, arrival_ns);
+  const double own_ms = measured_ms(status, arrival_ns);
   const std::string prefix = metric::kClockPrefix + status.service;
-  std::vector<msg::Metric> metrics = {{prefix + metric::kClockReceivedSuffix, *clocks_.measured_ms(status.service)}};
-  const std::optional<double> peer_measured_ms =
+  std::vector<msg::Metric> metrics = {{prefix + metric::kClockReceivedSuffix, own_ms}};
+  const std::optional<double> peer_ms =
       find_metric(status, metric::kClockPrefix + own_service_ + metric::kClockReceivedSuffix);
-  if (!peer_measured_ms) return metrics;
-  const ClockOffset offset = *clocks_.offset(status.service, *peer_measured_ms);
+  if (!peer_ms) return metrics;
+  const ClockOffset offset{(*peer_ms - own_ms) / 2, *peer_ms + own_ms};
   metrics.push_back({prefix + metric::kClockOffsetSuffix, offset.offset_ms});
   metrics.push_back({prefix + metric::kClockRoundTripSuffix, offset.round_trip_ms});
   warn_once(status, *host_id, offset);
