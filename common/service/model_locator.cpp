@@ -43,16 +43,6 @@ std::string advice(const std::string& configured) {
   return "run `deploy/setup.sh --models" + option + "`, or point RTD_MODEL_DIR at a folder that has them";
 }
 
-/// What is missing.
-std::string missing(const std::string& configured) {
-  return find_known_model(configured) == &kMaskModel ? "no network for masks" : "no detector weights";
-}
-
-/// The configuration key that names another one.
-std::string key_of(const std::string& configured) {
-  return find_known_model(configured) == &kMaskModel ? "detector.mask_model" : "detector.model";
-}
-
 /// The file names that are looked for.
 std::vector<std::string> names_of(const std::string& configured) {
   if (const KnownModel* const known = find_known_model(configured)) return {known->file};
@@ -93,19 +83,13 @@ std::vector<std::filesystem::path> search_folders(const EnvironmentReader& envir
   return folders;
 }
 
-/// What is looked for.
-struct Wanted {
-  std::string missing;  ///< "no detector weights"
-  std::string key;      ///< of the configuration
-  std::string configured;
-};
-
-ModelSearch find(const Wanted& wanted, const EnvironmentReader& environment) {
-  const std::string& configured = wanted.configured;
+/// `masks`: the network for these.
+ModelSearch find(const std::string& configured, bool masks, const EnvironmentReader& environment) {
+  const std::string missing = masks ? "no network for masks" : "no detector weights";
   if (configured.find('/') != std::string::npos) {
     if (is_file(configured)) return {configured, {}};
     return {{},
-            wanted.missing + ": " + wanted.key + " is '" + io::abridged(configured) +
+            missing + ": " + (masks ? "detector.mask_model" : "detector.model") + " is '" + io::abridged(configured) +
                 "', which is no file; correct it, or " + advice(configured)};
   }
   const std::vector<std::string> names = names_of(configured);
@@ -115,22 +99,21 @@ ModelSearch find(const Wanted& wanted, const EnvironmentReader& environment) {
       if (is_file(folder / name)) return {(folder / name).string(), {}};
     looked.push_back(folder.string());
   }
-  return {{},
-          wanted.missing + ": looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " +
-              advice(configured)};
+  return {
+      {},
+      missing + ": looked for " + joined(names, " or ") + " in " + joined(looked, ", ") + "; " + advice(configured)};
 }
 
 }  // namespace
 
 ModelSearch find_model(const std::string& configured, const EnvironmentReader& environment) {
-  return find({missing(configured), key_of(configured), configured}, environment);
+  return find(configured, find_known_model(configured) == &kMaskModel, environment);
 }
 
 ModelSearch find_mask_model(const std::string& use, const std::string& configured,
                             const EnvironmentReader& environment) {
   if (use == "off") return {};
-  const std::string name = configured.empty() ? kMaskModel.file : configured;
-  ModelSearch found = find({missing(kMaskModel.file), key_of(kMaskModel.file), name}, environment);
+  ModelSearch found = find(configured.empty() ? kMaskModel.file : configured, true, environment);
   if (!found && (use == "on" || !configured.empty()))
     throw ConfigError(found.message + "; without masks: detector.masks: off (--masks off)");
   return found;
