@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -22,6 +21,7 @@
 #include "common/ros2/names.hpp"
 #include "common/service/log.hpp"
 #include "common/service/monotonic_clock.hpp"
+#include "common/service/stop_token.hpp"
 #include "services/camera/core/live/device_source.hpp"
 #include "services/camera/openni2/oni_file.hpp"
 #include "services/camera/openni2/openni2_device.hpp"
@@ -249,31 +249,13 @@ std::string Ros2Feed::without_publisher() const {
 class HostClock final : public DeviceClock {
  public:
   std::int64_t now_ns() const override { return service::monotonic_ns(); }
-  void wait(std::chrono::milliseconds time) override {
-    std::unique_lock lock(mutex_);
-    change_.wait_for(lock, time, [this] { return closed_; });
-  }
-  void close() override {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-    change_.notify_all();
-  }
-  bool closed() const override {
-    const std::lock_guard lock(mutex_);
-    return closed_;
-  }
+  void wait(std::chrono::milliseconds time) override { stop_.wait_for(time); }
+  void close() override { stop_.request_stop(); }
+  bool closed() const override { return stop_.stop_requested(); }
 
  private:
-  mutable std::mutex mutex_;
-  std::condition_variable change_;
-  bool closed_ = false;
+  service::StopToken stop_;
 };
-
-/// Unix time minus the time of HostClock.
-std::int64_t epoch_ns() {
-  const auto unix_time = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(unix_time).count() - service::monotonic_ns();
-}
 
 /// A file is checked before OpenNI2's library reads it.
 std::unique_ptr<LiveDevice> make_checked_openni2_device(const DeviceUri& uri) {
@@ -290,7 +272,7 @@ std::unique_ptr<LiveDevice> make_checked_openni2_device(const DeviceUri& uri) {
 std::unique_ptr<FrameSource> make_live_source(const std::string& uri, const bus::BusOptions& bus,
                                               std::int64_t open_timeout_ns,
                                               std::function<void(const std::string&)> on_wait) {
-  DeviceOptions options{{}, open_timeout_ns, epoch_ns(), std::move(on_wait)};
+  DeviceOptions options{{}, open_timeout_ns, service::realtime_ns() - service::monotonic_ns(), std::move(on_wait)};
   std::unique_ptr<LiveDevice> device;
   if (is_device(uri)) {
     options.uri = parse_device_uri(uri);
