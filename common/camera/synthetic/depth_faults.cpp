@@ -142,16 +142,11 @@ void DepthFaults::fly(cv::Mat& depth, const cv::Mat& inverse_depth, std::uint64_
       if (!is_edge(nearest, farthest)) continue;
       const float noise = mixing.at<float>(row, column);
       const float share = std::clamp((noise + 2.0F) / (lost_above + 2.0F), 0.0F, 1.0F);
+      const float mixed = farthest + (nearest - farthest) * share;
       depth.at<std::uint16_t>(row, column) =
-          noise > lost_above ? std::uint16_t{0} : to_units(farthest + (nearest - farthest) * share);
+          noise > lost_above || mixed <= 0 ? std::uint16_t{0} : sensor_.to_units(1.0F / mixed);
     }
   }
-}
-
-std::uint16_t DepthFaults::to_units(float inverse_depth) const {
-  const float depth_m = inverse_depth > 0 ? 1.0F / inverse_depth : 0;
-  if (depth_m < model_.min_depth_m || depth_m > model_.max_depth_m) return 0;
-  return static_cast<std::uint16_t>(std::lround(depth_m * model_.depth_units_per_m));
 }
 
 /// Pixels near a depth edge have the value of some pixels away: the edge is ragged, and values lie on its wrong side.

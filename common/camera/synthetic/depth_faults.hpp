@@ -54,7 +54,6 @@ class DepthFaults {
   void scale(cv::Mat& depth) const;
   cv::Mat registered(const cv::Mat& depth) const;
   void register_row(const cv::Mat& depth, int row, cv::Mat& moved) const;
-  std::uint16_t to_units(float inverse_depth) const;
 
   SensorFaults faults_;
   SensorModel model_;

@@ -28,10 +28,7 @@ std::array<Face, 6> outer_faces(const Cuboid& cuboid) {
                 times(R_world_cuboid, t),
                 extent(s),
                 extent(t),
-                cuboid.texture,
-                cuboid.moving,
-                cuboid.object,
-                cuboid.material};
+                cuboid.surface};
   };
   const Vector3f x = Vector3f::UnitX(), y = Vector3f::UnitY(), z = Vector3f::UnitZ();
   return {face(x, y, z), face(-x, -y, z), face(y, -x, z), face(-y, x, z), face(z, x, y), face(-z, -x, y)};

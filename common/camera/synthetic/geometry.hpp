@@ -73,25 +73,27 @@ enum class Material : std::uint8_t {
   kMonitor,  ///< a screen
 };
 
+/// How a rectangle or body looks, and what it belongs to.
+struct Surface {
+  int texture = 0;  ///< index
+  bool moving = false;
+  int object = kRoomItself;  ///< index
+  Material material = Material::kPlain;
+};
+
 /// A textured rectangle, seen from the side its normal axis_s x axis_t points to. World frame: z up.
 struct Face {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< corner with texture coordinate (0, 0)
   Eigen::Vector3f axis_s = Eigen::Vector3f::UnitX(), axis_t = Eigen::Vector3f::UnitY();  ///< unit, orthogonal
   float width_m = 0, height_m = 0;                                                       ///< along axis_s, axis_t
-  int texture = 0;                                                                       ///< index
-  bool moving = false;
-  int object = kRoomItself;  ///< index
-  Material material = Material::kPlain;
+  Surface surface;
 };
 
 /// A textured ellipsoid. Body frame: centre and main axes.
 struct Ellipsoid {
   Eigen::Isometry3f T_world_body = Eigen::Isometry3f::Identity();
   Eigen::Vector3f semi_axes_m = Eigen::Vector3f::Ones();
-  int texture = 0;  ///< index
-  bool moving = false;
-  int object = kRoomItself;  ///< index
-  Material material = Material::kPlain;
+  Surface surface;
 };
 
 /// Whether hair grows at a point of a head, a unit sphere here: its back (x forward) and its top (z up).
@@ -112,10 +114,7 @@ struct Geometry {
 struct Cuboid {
   Eigen::Isometry3f T_world_cuboid = Eigen::Isometry3f::Identity();
   Eigen::Vector3f size_m = Eigen::Vector3f::Ones();
-  int texture = 0;
-  bool moving = false;
-  int object = kRoomItself;
-  Material material = Material::kPlain;
+  Surface surface;
 };
 
 /// T_world_body of something that stands at `position_m`, turned about the vertical.

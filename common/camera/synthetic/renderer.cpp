@@ -44,6 +44,27 @@ float around(const Eigen::Vector3f& on_sphere) {
 
 }  // namespace
 
+std::vector<ObjectView> find_objects(const Rendering& seen) {
+  std::vector<ObjectView> objects;  // index: object
+  for (int row = 0; row < seen.object.rows; ++row) {
+    const auto* object = seen.object.ptr<std::int16_t>(row);
+    const auto* moving = seen.moving_mask.ptr<std::uint8_t>(row);
+    for (int begin = 0, end = 0; begin < seen.object.cols; begin = end) {
+      while (end < seen.object.cols && object[end] == object[begin]) ++end;
+      if (object[begin] == kRoomItself) continue;
+      const auto index = static_cast<std::size_t>(object[begin]);
+      if (index >= objects.size()) objects.resize(index + 1);
+      ObjectView& view = objects[index];
+      view.object = object[begin];
+      view.bounds_px |= cv::Rect(begin, row, end - begin, 1);  // union; an empty one counts for nothing
+      view.visible_px += end - begin;
+      view.moving = view.moving || std::any_of(moving + begin, moving + end, [](std::uint8_t m) { return m != 0; });
+    }
+  }
+  std::erase_if(objects, [](const ObjectView& view) { return view.visible_px == 0; });
+  return objects;
+}
+
 Renderer::Renderer(const geometry::CameraModel& camera)
     : camera_(camera.parameters()),
       color_bgr_(camera_.height, camera_.width, CV_8UC3),
@@ -68,11 +89,8 @@ Rendering Renderer::render_rows(const Geometry& geometry, const std::vector<Text
   std::int32_t id = 0;
   for (const VisibleFace& face : faces_) cover_with_face(face, id++);
   for (const VisibleEllipsoid& ellipsoid : ellipsoids_) cover_with_ellipsoid(ellipsoid, id++);
-  if (rows.start == 0) objects_.assign(geometry.object_classes.size(), {});
   shade();
-  std::vector<ObjectView> seen;
-  std::ranges::copy_if(objects_, std::back_inserter(seen), [](const ObjectView& o) { return o.visible_px > 0; });
-  return {color_bgr_, inverse_depth_, moving_mask_, material_, object_, std::move(seen)};
+  return {color_bgr_, inverse_depth_, moving_mask_, material_, object_};
 }
 
 void Renderer::set_pose(const Eigen::Isometry3d& T_world_camera) {
@@ -98,10 +116,8 @@ void Renderer::collect(const Geometry& geometry, const std::vector<Texture>& tex
     const float distance_m = dot(normal, camera_from_origin);
     if (distance_m < 1e-4F) continue;  // seen from behind
     VisibleFace visible;
-    visible.texture = &textures[static_cast<std::size_t>(face.texture)];
-    visible.moving = face.moving;
-    visible.object = face.object;
-    visible.material = face.material;
+    visible.texture = &textures[static_cast<std::size_t>(face.surface.texture)];
+    visible.surface = face.surface;
     visible.plane_distance_m = distance_m;
     const float scale = visible.texture->texels_per_m;
     const LinearForm toward = along(normal * (-1.0F / distance_m));  // 1/z = -(n . ray) / distance
@@ -133,10 +149,8 @@ void Renderer::collect_ellipsoid(const Ellipsoid& ellipsoid, const std::vector<T
   visible.ray_v = times(to_sphere, ray_v_);
   visible.normal_to_world = to_sphere.transpose();
   visible.bounds = bounds;
-  visible.texture = &textures[static_cast<std::size_t>(ellipsoid.texture)];
-  visible.moving = ellipsoid.moving;
-  visible.object = ellipsoid.object;
-  visible.material = ellipsoid.material;
+  visible.texture = &textures[static_cast<std::size_t>(ellipsoid.surface.texture)];
+  visible.surface = ellipsoid.surface;
   ellipsoids_.push_back(visible);
 }
 
@@ -233,7 +247,7 @@ void Renderer::shade() {
   }
 }
 
-Renderer::Run Renderer::shade_run(std::int32_t id, int row, Span span) {
+Surface Renderer::shade_run(std::int32_t id, int row, Span span) {
   const auto face_count = static_cast<std::int32_t>(faces_.size());
   if (id == kNothing) {
     std::fill_n(color_bgr_.ptr<std::uint8_t>(row) + 3 * span.begin, 3 * (span.end - span.begin), std::uint8_t{0});
@@ -242,27 +256,21 @@ Renderer::Run Renderer::shade_run(std::int32_t id, int row, Span span) {
   if (id < face_count) {
     const VisibleFace& face = faces_[static_cast<std::size_t>(id)];
     shade_face_run(face, row, span);
-    return {face.moving, face.object, face.material};
+    return face.surface;
   }
   const VisibleEllipsoid& ellipsoid = ellipsoids_[static_cast<std::size_t>(id - face_count)];
   shade_ellipsoid_run(ellipsoid, row, span);
-  return {ellipsoid.moving, ellipsoid.object, ellipsoid.material};
+  return ellipsoid.surface;
 }
 
-void Renderer::label_run(const Run& run, int row, Span span) {
+void Renderer::label_run(const Surface& surface, int row, Span span) {
   const int pixels = span.end - span.begin;
   std::fill_n(moving_mask_.ptr<std::uint8_t>(row) + span.begin, pixels,
-              static_cast<std::uint8_t>(run.moving ? 255 : 0));
-  std::fill_n(object_.ptr<std::int16_t>(row) + span.begin, pixels, static_cast<std::int16_t>(run.object));
-  if (run.material != Material::kHead) {  // shade_ellipsoid_run has separated hair from skin
-    std::fill_n(material_.ptr<std::uint8_t>(row) + span.begin, pixels, static_cast<std::uint8_t>(run.material));
+              static_cast<std::uint8_t>(surface.moving ? 255 : 0));
+  std::fill_n(object_.ptr<std::int16_t>(row) + span.begin, pixels, static_cast<std::int16_t>(surface.object));
+  if (surface.material != Material::kHead) {  // shade_ellipsoid_run has separated hair from skin
+    std::fill_n(material_.ptr<std::uint8_t>(row) + span.begin, pixels, static_cast<std::uint8_t>(surface.material));
   }
-  if (run.object == kRoomItself) return;
-  ObjectView& view = objects_[static_cast<std::size_t>(run.object)];
-  view.object = run.object;
-  view.bounds_px |= cv::Rect(span.begin, row, pixels, 1);  // union; an empty one counts for nothing
-  view.visible_px += pixels;
-  view.moving = view.moving || run.moving;
 }
 
 /// Texels of level 0 under one pixel of a surface seen head-on.
@@ -310,7 +318,7 @@ void Renderer::shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, S
     pixel[0] = static_cast<std::uint8_t>(((texel & 255U) * light) >> 8);
     pixel[1] = static_cast<std::uint8_t>((((texel >> 8) & 255U) * light) >> 8);
     pixel[2] = static_cast<std::uint8_t>((((texel >> 16) & 255U) * light) >> 8);
-    if (ellipsoid.material == Material::kHead) {
+    if (ellipsoid.surface.material == Material::kHead) {
       material_.at<std::uint8_t>(row, column) =
           static_cast<std::uint8_t>(is_hair(on_sphere) ? Material::kDark : Material::kPlain);
     }

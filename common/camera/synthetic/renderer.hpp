@@ -11,6 +11,15 @@
 
 namespace rtd::camera::synthetic {
 
+/// What an ideal pinhole RGB-D camera sees. Valid until the next call of the renderer that made it.
+struct Rendering {
+  cv::Mat color_bgr;      ///< CV_8UC3
+  cv::Mat inverse_depth;  ///< CV_32FC1, 1 / z in 1/m; 0 = nothing there
+  cv::Mat moving_mask;    ///< CV_8UC1, 255 = moving object
+  cv::Mat material;       ///< CV_8UC1, Material; a head is skin (kPlain) and hair (kDark)
+  cv::Mat object;         ///< CV_16SC1, index of the object or kRoomItself
+};
+
 /// What of an object is seen.
 struct ObjectView {
   int object = kRoomItself;  ///< index
@@ -19,15 +28,8 @@ struct ObjectView {
   bool moving = false;  ///< some of what is seen of it moves
 };
 
-/// What an ideal pinhole RGB-D camera sees. Valid until the next call of the renderer that made it.
-struct Rendering {
-  cv::Mat color_bgr;                ///< CV_8UC3
-  cv::Mat inverse_depth;            ///< CV_32FC1, 1 / z in 1/m; 0 = nothing there
-  cv::Mat moving_mask;              ///< CV_8UC1, 255 = moving object
-  cv::Mat material;                 ///< CV_8UC1, Material; a head is skin (kPlain) and hair (kDark)
-  cv::Mat object;                   ///< CV_16SC1, index of the object or kRoomItself
-  std::vector<ObjectView> objects;  ///< those that are seen, by index
-};
+/// The objects that an image shows, by index.
+std::vector<ObjectView> find_objects(const Rendering& seen);
 
 /// Draws textured rectangles and ellipsoids into a pinhole camera without distortion, exact to float precision: 1/z and
 /// texture/z of a plane are linear in the pixel, an ellipsoid is a quadratic equation per pixel. Visibility first, then
@@ -38,8 +40,7 @@ class Renderer {
 
   Rendering render(const Geometry& geometry, const std::vector<Texture>& textures,
                    const Eigen::Isometry3d& T_world_camera);
-  /// Draws some rows as they are seen at one moment; the others stay as they were drawn for another. Bands are drawn
-  /// from the top: the first row forgets the objects that were seen.
+  /// Draws some rows as they are seen at one moment; the others stay as they were drawn for another.
   Rendering render_rows(const Geometry& geometry, const std::vector<Texture>& textures,
                         const Eigen::Isometry3d& T_world_camera, cv::Range rows);
   int height_px() const { return camera_.height; }
@@ -56,9 +57,7 @@ class Renderer {
     float width_texels = 0, height_texels = 0;
     float plane_distance_m = 0;  ///< of the camera centre
     const Texture* texture = nullptr;
-    bool moving = false;
-    int object = kRoomItself;
-    Material material = Material::kPlain;
+    Surface surface;
   };
   /// An ellipsoid in the frame where it is the unit sphere; the ray to a pixel is center + z * (ray0 + u * ray_u + v *
   /// ray_v).
@@ -67,9 +66,7 @@ class Renderer {
     Eigen::Matrix3f normal_to_world;
     cv::Rect bounds;  ///< px
     const Texture* texture = nullptr;
-    bool moving = false;
-    int object = kRoomItself;
-    Material material = Material::kPlain;
+    Surface surface;
   };
   struct Span {
     int begin, end;
@@ -84,14 +81,8 @@ class Renderer {
   Span row_span(const VisibleFace& face, float v) const;
   void cover_with_ellipsoid(const VisibleEllipsoid& ellipsoid, std::int32_t id);
   void shade();
-  /// What a run of pixels shows, apart from its colour.
-  struct Run {
-    bool moving = false;
-    int object = kRoomItself;
-    Material material = Material::kPlain;
-  };
-  Run shade_run(std::int32_t id, int row, Span span);
-  void label_run(const Run& run, int row, Span span);
+  Surface shade_run(std::int32_t id, int row, Span span);
+  void label_run(const Surface& surface, int row, Span span);
   void shade_face_run(const VisibleFace& face, int row, Span span);
   void shade_ellipsoid_run(const VisibleEllipsoid& ellipsoid, int row, Span span);
   float footprint_texels(float texels_per_m, float inverse_depth) const;
@@ -103,7 +94,6 @@ class Renderer {
   Eigen::Matrix3f R_camera_world_;
   std::vector<VisibleFace> faces_;
   std::vector<VisibleEllipsoid> ellipsoids_;
-  std::vector<ObjectView> objects_;  ///< index: object; visible_px 0 = not seen
   cv::Mat color_bgr_, inverse_depth_, moving_mask_, material_, object_;
   cv::Mat ids_;  ///< CV_32SC1, index of a face, then of an ellipsoid, -1 nothing
 };

@@ -119,7 +119,7 @@ class SideBuilder {
       cuboid.T_world_cuboid = side_->T_world_side;
       cuboid.T_world_cuboid.translation() =
           side_->T_world_side * Vector3f(along_m, outer ? thick_m / 2 : width - thick_m / 2, 0);
-      cuboid.texture = texture(cuboid.size_m.x(), cuboid.size_m.z(), kPilasterTexelsPerM, kPatchesPerM2);
+      cuboid.surface.texture = texture(cuboid.size_m.x(), cuboid.size_m.z(), kPilasterTexelsPerM, kPatchesPerM2);
       for (const Face& face : outer_faces(cuboid)) faces_.push_back(face);
     }
   }
@@ -261,8 +261,8 @@ std::vector<Face> shell(SeededRandom& random, std::vector<Texture>& textures) {
   for (Face& face : faces) {
     const bool wall = face.height_m == kRoomHeightM;
     const TextureStyle style = random_style(random, wall ? 3.0F : 2.5F);
-    face.texture = add_texture(textures, face.width_m, face.height_m, wall ? kRoomWallTexelsPerM : kRoomFloorTexelsPerM,
-                               style, random.next());
+    face.surface.texture = add_texture(textures, face.width_m, face.height_m,
+                                       wall ? kRoomWallTexelsPerM : kRoomFloorTexelsPerM, style, random.next());
   }
   return faces;
 }
@@ -274,11 +274,11 @@ std::vector<Face> build_room(std::uint64_t seed, std::vector<Texture>& textures)
   std::vector<Face> faces = shell(random, textures);
   for (const Furniture& piece : furniture()) {
     Cuboid cuboid{.T_world_cuboid = upright(piece.position_m, piece.turned_rad), .size_m = piece.size_m};
-    cuboid.material = piece.material;
+    cuboid.surface.material = piece.material;
     const float width_m = std::max(piece.size_m.x(), piece.size_m.y());
     const std::uint64_t texture_seed = random.next();
-    cuboid.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
-                                 random_style(random, 12.0F), texture_seed);
+    cuboid.surface.texture = add_texture(textures, width_m, std::max(piece.size_m.z(), width_m), kFurnitureTexelsPerM,
+                                         random_style(random, 12.0F), texture_seed);
     for (const Face& face : outer_faces(cuboid)) faces.push_back(face);
   }
   return faces;

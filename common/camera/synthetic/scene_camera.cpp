@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "common/camera/synthetic/texture.hpp"
@@ -123,26 +122,7 @@ Rendering Lens::bent(const Rendering& rendering) const {
   bent.moving_mask = nearest(rendering.moving_mask);
   bent.material = nearest(rendering.material);
   bent.object = nearest(rendering.object);
-  bent.objects = find_objects(bent.object, bent.moving_mask);
   return bent;
-}
-
-std::vector<ObjectView> find_objects(const cv::Mat& object, const cv::Mat& moving_mask) {
-  std::map<int, ObjectView> found;
-  for (int row = 0; row < object.rows; ++row) {
-    for (int column = 0; column < object.cols; ++column) {
-      const int index = object.at<std::int16_t>(row, column);
-      if (index == kRoomItself) continue;
-      ObjectView& view = found[index];
-      view.object = index;
-      view.bounds_px |= cv::Rect(column, row, 1, 1);
-      ++view.visible_px;
-      view.moving = view.moving || moving_mask.at<std::uint8_t>(row, column) != 0;
-    }
-  }
-  std::vector<ObjectView> objects;
-  for (const auto& [index, view] : found) objects.push_back(view);
-  return objects;
 }
 
 ColorFaults::ColorFaults(const SensorFaults& faults, cv::Size size_px, double fps, std::uint64_t seed)
@@ -223,7 +203,7 @@ Shot SceneCamera::shoot(std::uint64_t index, double t_s) {
   Shot shot;
   shot.color_bgr = color_faults_.compressed(color_sensor_.measure_color(lit_bgr, index));
   shot.moving_mask = seen.moving_mask.clone();  // the renderer draws the depth, and the next frame, into the same one
-  shot.objects = seen.objects;
+  shot.objects = find_objects(seen);
   if (depth_is_missing(index)) {
     shot.depth = cv::Mat::zeros(shot.color_bgr.size(), CV_16UC1);
     return shot;

@@ -41,9 +41,6 @@ class Lens {
   cv::Mat from_u_, from_v_;  ///< CV_32FC1, px of the pinhole image; empty without distortion
 };
 
-/// The objects that an image shows, by index. `object` and `moving_mask`: as in Rendering.
-std::vector<ObjectView> find_objects(const cv::Mat& object, const cv::Mat& moving_mask);
-
 /// The faults of a colour image at one instant. A pure function of seed and time; immutable.
 class ColorFaults {
  public:

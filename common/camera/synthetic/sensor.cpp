@@ -185,61 +185,49 @@ const std::vector<FaultParameter>& fault_parameters() {
   return parameters;
 }
 
-namespace {
-
-/// Structured light, colour and depth rolling; lens and calibration as TUM's freiburg1.
-SensorFaults kinect() {
-  SensorFaults faults;
-  faults.noise_correlation_px = 5;
-  faults.holes = 0.2;
-  faults.dark_holes = 0.75;
-  faults.monitor_holes = 0.9;
-  faults.flying_px = 2;
-  faults.wrong_side_px = 2;
-  faults.shadow_px = 14;
-  faults.registration_px = 1.5;
-  faults.parallax_px_m = 2;
-  faults.depth_error = 0.015;
-  faults.rolling_shutter_ms = 21;
-  faults.depth_shutter_ms = 26;
-  faults.blur_ms = 10;
-  faults.depth_lag_ms = 9;
-  faults.exposure_ev = 0.75;
-  faults.vignetting = 0.25;
-  faults.distortion = 1;
-  faults.calibration_error = 0.01;
-  return faults;
-}
-
-/// Active stereo: global shutter and fine steps, but noisier, with wide flying edges; colour as JPEG by USB.
-SensorFaults d435() {
-  SensorFaults faults;
-  faults.disparity_step_px = 0.05;
-  faults.disparity_noise_px = 0.13;
-  faults.noise_correlation_px = 7;
-  faults.holes = 0.15;
-  faults.dark_holes = 0.6;
-  faults.monitor_holes = 0.7;
-  faults.flying_px = 4;
-  faults.wrong_side_px = 3;
-  faults.shadow_px = 8;
-  faults.registration_px = 1;
-  faults.parallax_px_m = 1;
-  faults.depth_error = 0.01;
-  faults.rolling_shutter_ms = 15;
-  faults.blur_ms = 8;
-  faults.depth_lag_ms = -5;
-  faults.exposure_ev = 0.75;
-  faults.vignetting = 0.2;
-  faults.jpeg = 80;
-  faults.calibration_error = 0.005;
-  return faults;
-}
-
-}  // namespace
-
-const std::vector<SensorPreset>& sensor_presets() {
-  static const std::vector<SensorPreset> presets = {{"kinect", kinect()}, {"d435", d435()}};
+const std::vector<std::pair<std::string, SensorFaults>>& sensor_presets() {
+  static const std::vector<std::pair<std::string, SensorFaults>> presets = {
+      // Structured light, colour and depth rolling; lens and calibration as TUM's freiburg1.
+      {"kinect",
+       {.noise_correlation_px = 5,
+        .holes = 0.2,
+        .dark_holes = 0.75,
+        .monitor_holes = 0.9,
+        .flying_px = 2,
+        .wrong_side_px = 2,
+        .shadow_px = 14,
+        .registration_px = 1.5,
+        .parallax_px_m = 2,
+        .depth_error = 0.015,
+        .rolling_shutter_ms = 21,
+        .depth_shutter_ms = 26,
+        .blur_ms = 10,
+        .depth_lag_ms = 9,
+        .exposure_ev = 0.75,
+        .vignetting = 0.25,
+        .distortion = 1,
+        .calibration_error = 0.01}},
+      // Active stereo: global shutter and fine steps, but noisier, with wide flying edges; colour as JPEG by USB.
+      {"d435",
+       {.disparity_step_px = 0.05,
+        .disparity_noise_px = 0.13,
+        .noise_correlation_px = 7,
+        .holes = 0.15,
+        .dark_holes = 0.6,
+        .monitor_holes = 0.7,
+        .flying_px = 4,
+        .wrong_side_px = 3,
+        .shadow_px = 8,
+        .registration_px = 1,
+        .parallax_px_m = 1,
+        .depth_error = 0.01,
+        .rolling_shutter_ms = 15,
+        .blur_ms = 8,
+        .depth_lag_ms = -5,
+        .exposure_ev = 0.75,
+        .vignetting = 0.2,
+        .jpeg = 80,
+        .calibration_error = 0.005}}};
   return presets;
 }
 

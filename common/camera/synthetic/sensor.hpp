@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rtd::camera::synthetic {
@@ -51,12 +52,13 @@ class Sensor {
   /// 16-bit depth, 0 = no measurement: out of range, grazing, next to a depth edge, or hidden from the projector.
   /// `noise`: CV_32FC1, variance 1, instead of the sensor's own white noise when not empty.
   cv::Mat measure_depth(const cv::Mat& inverse_depth, std::uint64_t frame_index, const cv::Mat& noise = {}) const;
+  /// Rounded; 0 out of range.
+  std::uint16_t to_units(float depth_m) const;
   /// The image with noise, in its own buffer.
   cv::Mat measure_color(const cv::Mat& ideal_bgr, std::uint64_t frame_index) const;
 
  private:
   void measure_depth_row(const cv::Mat& inverse_depth, int row, const float* noise, std::uint16_t* depth) const;
-  std::uint16_t to_units(float depth_m) const;
 
   SensorModel model_;
   std::uint64_t seed_;
@@ -89,11 +91,7 @@ struct FaultParameter {
 };
 const std::vector<FaultParameter>& fault_parameters();
 
-/// A sensor with a name: `sensor=NAME`.
-struct SensorPreset {
-  std::string name;
-  SensorFaults faults;
-};
-const std::vector<SensorPreset>& sensor_presets();
+/// Sensors with a name: `sensor=NAME`.
+const std::vector<std::pair<std::string, SensorFaults>>& sensor_presets();
 
 }  // namespace rtd::camera::synthetic

@@ -116,55 +116,47 @@ std::vector<Parameter> parameters_of(SyntheticOptions& options) {
   return parameters;
 }
 
-struct NamedMotion {
-  std::string name;
-  synthetic::CameraMotion motion;
-};
-
-const std::vector<NamedMotion>& camera_motions() {
-  using enum synthetic::CameraMotion;
-  static const std::vector<NamedMotion> motions = {{"handheld", kHandHeld}, {"watching", kWatching}, {"tour", kTour},
-                                                   {"rolling", kRolling},   {"steady", kSteady},     {"fixed", kFixed},
-                                                   {"driving", kDriving}};
-  return motions;
-}
-
-struct NamedLook {
-  std::string name;
-  synthetic::FigureLook look;
-};
-const std::vector<NamedLook>& figure_looks() {
-  static const std::vector<NamedLook> looks = {{"plain", synthetic::FigureLook::kPlain},
-                                               {"drawn", synthetic::FigureLook::kDrawn}};
-  return looks;
-}
-
-struct NamedTiming {
-  std::string name;
-  bool known;
-};
-const std::vector<NamedTiming>& timings() {
-  static const std::vector<NamedTiming> choices = {{"unknown", false}, {"known", true}};
-  return choices;
-}
-
 /// The parameters whose value is a word.
 const std::vector<std::string>& word_keys() {
   static const std::vector<std::string> keys = {"sensor", "motion", "figures", "timing"};
   return keys;
 }
 
-/// The choice of this name, for a parameter whose value is a word.
-template <class Named>
-const Named& choose(const SourceUri& uri, const std::string& key, const std::vector<Named>& choices) {
-  const std::string& name = uri.parameters.at(key);
+template <class T>
+using Choices = std::vector<std::pair<std::string, T>>;
+
+/// Sets what the word that the URI has for `key`, if any, stands for.
+template <class T>
+void choose(const SourceUri& uri, const std::string& key, const Choices<T>& choices, T& chosen) {
+  const auto given = uri.parameters.find(key);
+  if (given == uri.parameters.end()) return;
   std::string names;
-  for (const Named& choice : choices) {
-    if (choice.name == name) return choice;
-    names += (names.empty() ? "" : ", ") + choice.name;
+  for (const auto& [name, choice] : choices) {
+    if (name == given->second) {
+      chosen = choice;
+      return;
+    }
+    names += (names.empty() ? "" : ", ") + name;
   }
-  throw SourceError("source '" + io::abridged(uri.text) + "': " + key + " is '" + io::abridged(name) +
+  throw SourceError("source '" + io::abridged(uri.text) + "': " + key + " is '" + io::abridged(given->second) +
                     "', allowed are " + names);
+}
+
+void choose_words(const SourceUri& uri, SyntheticOptions& options) {
+  using enum synthetic::CameraMotion;
+  using enum synthetic::FigureLook;
+  choose(uri, "sensor", synthetic::sensor_presets(), options.faults);
+  choose(uri, "timing", {{"unknown", false}, {"known", true}}, options.timing_known);
+  choose(uri, "motion",
+         {{"handheld", kHandHeld},
+          {"watching", kWatching},
+          {"tour", kTour},
+          {"rolling", kRolling},
+          {"steady", kSteady},
+          {"fixed", kFixed},
+          {"driving", kDriving}},
+         options.scene.motion);
+  choose(uri, "figures", {{"plain", kPlain}, {"drawn", kDrawn}}, options.scene.figures);
 }
 
 [[noreturn]] void refuse_parameter(const SourceUri& uri, const std::string& key,
@@ -213,10 +205,7 @@ SyntheticOptions parse_synthetic_options(const SourceUri& uri) {
   options.scene = find_scene(uri);
   options.frames = options.scene.frames;
   options.fps = options.scene.fps;
-  if (uri.parameters.contains("sensor")) options.faults = choose(uri, "sensor", synthetic::sensor_presets()).faults;
-  if (uri.parameters.contains("timing")) options.timing_known = choose(uri, "timing", timings()).known;
-  if (uri.parameters.contains("motion")) options.scene.motion = choose(uri, "motion", camera_motions()).motion;
-  if (uri.parameters.contains("figures")) options.scene.figures = choose(uri, "figures", figure_looks()).look;
+  choose_words(uri, options);
   const std::vector<Parameter> parameters = parameters_of(options);
   for (const auto& [key, value] : uri.parameters) {
     if (std::ranges::find(word_keys(), key) != word_keys().end()) continue;

@@ -60,7 +60,7 @@ TEST(Shutter, every_row_is_seen_at_its_own_time) {
   }
   EXPECT_FALSE(same(rolling.color_bgr.rowRange(0, 8), look(other, kTimeS).color_bgr.rowRange(0, 8)));
   int visible = 0;
-  for (const synthetic::ObjectView& object : rolling.objects) visible += object.visible_px;
+  for (const synthetic::ObjectView& object : synthetic::find_objects(rolling)) visible += object.visible_px;
   EXPECT_EQ(visible, cv::countNonZero(rolling.moving_mask)) << "objects are counted over all bands";
 }
 

@@ -177,7 +177,7 @@ TEST(FlickerScene, changes_the_light_and_nothing_else) {
 std::size_t textures_of(const CorridorPlan& plan, std::uint64_t seed) {
   std::vector<Texture> textures;
   std::set<int> used;
-  for (const Face& face : build_corridor(plan, seed, textures)) used.insert(face.texture);
+  for (const Face& face : build_corridor(plan, seed, textures)) used.insert(face.surface.texture);
   EXPECT_EQ(used.size(), textures.size()) << "none is painted in vain";
   return used.size();
 }
@@ -223,7 +223,7 @@ TEST(Corridor, alike_places_look_alike_from_alike_poses) {
   ASSERT_EQ(4 * quarter, faces.size());
   const Eigen::AngleAxisf turn(static_cast<float>(EIGEN_PI / 2), Eigen::Vector3f::UnitZ());
   for (std::size_t i = 0; i < quarter; ++i) {
-    EXPECT_EQ(faces[i].texture, faces[i + quarter].texture);
+    EXPECT_EQ(faces[i].surface.texture, faces[i + quarter].surface.texture);
     EXPECT_LT((turn * faces[i].origin - faces[i + quarter].origin).norm(), 1e-4F);
   }
 }

@@ -21,7 +21,7 @@ constexpr float kWallsM = 1.0F;  // of the plan around the room
 Eigen::AlignedBox3f static_extent(const Geometry& geometry) {
   Eigen::AlignedBox3f extent;
   for (const Face& face : geometry.faces) {
-    if (face.moving) continue;
+    if (face.surface.moving) continue;
     extent.extend(face.origin);
     extent.extend(face.origin + face.width_m * face.axis_s + face.height_m * face.axis_t);
   }
@@ -63,7 +63,7 @@ bool GridTruth::solid(const Geometry& geometry, float x_m, float y_m) const {
   bool upwards = true;  // outside of the room there is nothing above
   for (const Face& face : geometry.faces) {
     const Eigen::Vector3f normal = face.axis_s.cross(face.axis_t);
-    if (face.moving || std::abs(normal.z()) < 0.9F) continue;
+    if (face.surface.moving || std::abs(normal.z()) < 0.9F) continue;
     const Eigen::Vector3f from = Eigen::Vector3f(x_m, y_m, face.origin.z()) - face.origin;
     const float s = from.dot(face.axis_s), t = from.dot(face.axis_t);
     if (s < 0 || t < 0 || s > face.width_m || t > face.height_m || face.origin.z() <= low_m) continue;
@@ -77,14 +77,14 @@ bool GridTruth::solid(const Geometry& geometry, float x_m, float y_m) const {
 
 void GridTruth::mark_movers(const Geometry& geometry) {
   for (const auto& ellipsoid : geometry.ellipsoids) {
-    if (!ellipsoid.moving) continue;
+    if (!ellipsoid.surface.moving) continue;
     const Eigen::Vector3f reach =
         (ellipsoid.T_world_body.linear() * ellipsoid.semi_axes_m.asDiagonal()).rowwise().norm();
     const Eigen::Vector3f center = ellipsoid.T_world_body.translation();
     mark(Eigen::AlignedBox3f(center - reach, center + reach));
   }
   for (const Face& face : geometry.faces) {
-    if (!face.moving) continue;
+    if (!face.surface.moving) continue;
     Eigen::AlignedBox3f box(face.origin);
     box.extend(face.origin + face.width_m * face.axis_s);
     box.extend(face.origin + face.height_m * face.axis_t);

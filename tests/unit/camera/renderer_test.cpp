@@ -37,7 +37,7 @@ Face facing_camera(const Eigen::Vector3f& center, bool moving = false) {
   face.axis_t = -Eigen::Vector3f::UnitY();  // normal -z, towards the camera
   face.width_m = face.height_m = 2;
   face.origin = center - face.axis_s - face.axis_t;
-  face.moving = moving;
+  face.surface.moving = moving;
   return face;
 }
 
@@ -84,7 +84,7 @@ TEST(Renderer, does_not_show_faces_from_behind) {
 TEST(Renderer, shows_the_nearer_of_two_and_masks_what_moves) {
   Renderer renderer(camera());
   Face near = facing_camera({1, 0, 2}, true);
-  near.texture = 1;
+  near.surface.texture = 1;
   const Rendering rendering =
       renderer.render({{near, facing_camera({0, 0, 4})}, {}}, {plain(50), plain(200)}, kAtOrigin);
   EXPECT_NEAR(depth_at(rendering, 100, 60), 2.0F, 1e-5F);
@@ -98,16 +98,17 @@ TEST(Renderer, gives_the_bounds_of_what_is_seen_of_an_object) {
   Renderer renderer(camera());
   Geometry geometry;
   Face behind = facing_camera({0, 0, 4}, true), before = facing_camera({1, 0, 2});
-  behind.object = geometry.add_object("person");
+  behind.surface.object = geometry.add_object("person");
   geometry.add_object("unseen");
   geometry.faces = {behind, before};
   const Rendering rendering = renderer.render(geometry, {plain(50)}, kAtOrigin);
-  ASSERT_EQ(rendering.objects.size(), 1U);
-  EXPECT_EQ(rendering.objects[0].object, 0);
-  EXPECT_TRUE(rendering.objects[0].moving);
+  const auto objects = synthetic::find_objects(rendering);
+  ASSERT_EQ(objects.size(), 1U);
+  EXPECT_EQ(objects[0].object, 0);
+  EXPECT_TRUE(objects[0].moving);
   // from 79.5 - 32.5 px to the edge of the face before it at 79.5; rows 59.5 -+ 32.5
-  EXPECT_EQ(rendering.objects[0].bounds_px, cv::Rect(47, 27, 33, 66));
-  EXPECT_EQ(rendering.objects[0].visible_px, rendering.objects[0].bounds_px.area());
+  EXPECT_EQ(objects[0].bounds_px, cv::Rect(47, 27, 33, 66));
+  EXPECT_EQ(objects[0].visible_px, objects[0].bounds_px.area());
 }
 
 TEST(Renderer, draws_an_ellipsoid_where_its_surface_is) {
@@ -115,7 +116,7 @@ TEST(Renderer, draws_an_ellipsoid_where_its_surface_is) {
   Ellipsoid ellipsoid;
   ellipsoid.T_world_body.translation() = Eigen::Vector3f(0, 0, 3);
   ellipsoid.semi_axes_m = Eigen::Vector3f(0.5F, 1.0F, 0.25F);
-  ellipsoid.moving = true;
+  ellipsoid.surface.moving = true;
   const Rendering rendering = renderer.render({{}, {ellipsoid}}, {plain(100)}, kAtOrigin);
   EXPECT_NEAR(0.5F * (depth_at(rendering, 79, 59) + depth_at(rendering, 80, 60)), 2.75F, 1e-3F);
   // Silhouette of the ellipse x^2/0.25 + (z-3)^2/0.0625 = 1 from the origin: x/z = 0.5 / sqrt(9 - 0.0625) -> 21.7 px
@@ -198,7 +199,8 @@ TEST(DrawnFigure, moves_the_parts_that_its_posture_names) {
   synthetic::Posture posture;
   posture.body_moves = false;
   int moving = 0;
-  for (const synthetic::Ellipsoid& part : figure_of(FigureLook::kDrawn, posture).ellipsoids) moving += part.moving;
+  for (const synthetic::Ellipsoid& part : figure_of(FigureLook::kDrawn, posture).ellipsoids)
+    moving += part.surface.moving;
   EXPECT_EQ(moving, 8);  // head, hair, upper arms, forearms, hands
 }
 

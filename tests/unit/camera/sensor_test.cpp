@@ -223,13 +223,14 @@ TEST(Lens, shows_a_point_where_the_distortion_puts_it) {
   const Eigen::Vector2d undistorted(22 - (pinhole.cx - 79.5), 17 - (pinhole.cy - 59.5));
   const Eigen::Vector2d expected = camera.distort(undistorted);
   EXPECT_GT((expected - undistorted).norm(), 1) << "a lens that bends";
-  ASSERT_EQ(bent.objects.size(), 1U);
-  const cv::Rect box = bent.objects[0].bounds_px;
+  const auto objects = synthetic::find_objects(bent);
+  ASSERT_EQ(objects.size(), 1U);
+  const cv::Rect box = objects[0].bounds_px;
   EXPECT_NEAR(box.x + (box.width - 1) / 2.0, expected.x(), 0.8);
   EXPECT_NEAR(box.y + (box.height - 1) / 2.0, expected.y(), 0.8);
-  EXPECT_TRUE(bent.objects[0].moving);
+  EXPECT_TRUE(objects[0].moving);
   EXPECT_EQ(bent.color_bgr.at<cv::Vec3b>((box.tl() + box.br()) / 2), cv::Vec3b::all(255));
-  EXPECT_EQ(cv::countNonZero(bent.inverse_depth), bent.objects[0].visible_px);
+  EXPECT_EQ(cv::countNonZero(bent.inverse_depth), objects[0].visible_px);
 }
 
 TEST(Lens, without_distortion_leaves_the_image) {
