@@ -25,15 +25,6 @@ QosSettings qos_settings(QosProfile profile) {
   throw BusError("QoS profile " + std::to_string(static_cast<int>(profile)) + " is not one of common/bus/qos.hpp");
 }
 
-std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested) {
-  if (requested.transient_local && !offered.transient_local) return "DURABILITY";
-  const bool offers_lease = offered.liveliness_lease_ms > 0, asks_lease = requested.liveliness_lease_ms > 0;
-  if (asks_lease && (!offers_lease || offered.liveliness_lease_ms > requested.liveliness_lease_ms)) return "LIVELINESS";
-  const bool offers_deadline = offered.deadline_ms > 0, asks_deadline = requested.deadline_ms > 0;
-  if (asks_deadline && (!offers_deadline || offered.deadline_ms > requested.deadline_ms)) return "DEADLINE";
-  return {};
-}
-
 std::string policy_name(unsigned id) {
   constexpr const char* kNames[] = {"INVALID",          "USER_DATA",         "DURABILITY", "PRESENTATION",
                                     "DEADLINE",         "LATENCY_BUDGET",    "OWNERSHIP",  "OWNERSHIP_STRENGTH",

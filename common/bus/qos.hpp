@@ -35,10 +35,6 @@ struct QosSettings {
 /// The one table of QoS profiles; every backend maps QosSettings to its vendor.
 QosSettings qos_settings(QosProfile profile);
 
-/// The policy in which a reader asks for more than a writer offers, by its DDS name, e.g. "DURABILITY"; empty when they
-/// match.
-std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested);
-
 /// DDS name of a policy by its number (DDS 1.4, annex 2.3.3), e.g. "RELIABILITY". Vendors number their own beyond 22.
 std::string policy_name(unsigned id);
 

@@ -8,6 +8,16 @@
 #include <utility>
 
 namespace rtd::bus::inprocess {
+
+std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested) {
+  if (requested.transient_local && !offered.transient_local) return "DURABILITY";
+  const bool offers_lease = offered.liveliness_lease_ms > 0, asks_lease = requested.liveliness_lease_ms > 0;
+  if (asks_lease && (!offers_lease || offered.liveliness_lease_ms > requested.liveliness_lease_ms)) return "LIVELINESS";
+  const bool offers_deadline = offered.deadline_ms > 0, asks_deadline = requested.deadline_ms > 0;
+  if (asks_deadline && (!offers_deadline || offered.deadline_ms > requested.deadline_ms)) return "DEADLINE";
+  return {};
+}
+
 namespace {
 
 bool same_topic(const EndpointKind& a, const EndpointKind& b) {

@@ -45,6 +45,10 @@ class DeliveryQueue {
   CallbackThread thread_;
 };
 
+/// The policy in which a reader asks for more than a writer offers, by its DDS name, e.g. "DURABILITY"; empty when they
+/// match.
+std::string incompatible_policy(const QosSettings& offered, const QosSettings& requested);
+
 /// What a writer offers or a reader asks for.
 struct EndpointKind {
   std::string topic, type;

@@ -16,6 +16,7 @@
 #include "common/bus/topics.hpp"
 #include "common/msg/imu.hpp"
 #include "common/msg/largest_sample.hpp"
+#include "tests/support/inprocess/domain.hpp"
 
 namespace rtd::bus {
 namespace {
@@ -118,16 +119,16 @@ TEST(QosProfiles, an_unknown_profile_number_is_refused) {
 TEST(QosProfiles, match_themselves_and_name_what_a_reader_asks_too_much) {
   for (const TopicFacts& topic : all_topics()) {
     const QosSettings settings = qos_settings(topic.profile);
-    EXPECT_EQ(incompatible_policy(settings, settings), "") << topic.name;
+    EXPECT_EQ(inprocess::incompatible_policy(settings, settings), "") << topic.name;
   }
   const QosSettings pose = qos_settings(QosProfile::kPose), latched = qos_settings(QosProfile::kLatched);
   const QosSettings heartbeat = qos_settings(QosProfile::kHeartbeat);
-  EXPECT_EQ(incompatible_policy(pose, latched), "DURABILITY");
-  EXPECT_EQ(incompatible_policy(latched, pose), "");
-  EXPECT_EQ(incompatible_policy(pose, heartbeat), "LIVELINESS");
+  EXPECT_EQ(inprocess::incompatible_policy(pose, latched), "DURABILITY");
+  EXPECT_EQ(inprocess::incompatible_policy(latched, pose), "");
+  EXPECT_EQ(inprocess::incompatible_policy(pose, heartbeat), "LIVELINESS");
   QosSettings no_deadline = heartbeat;
   no_deadline.deadline_ms = 0;
-  EXPECT_EQ(incompatible_policy(no_deadline, heartbeat), "DEADLINE");
+  EXPECT_EQ(inprocess::incompatible_policy(no_deadline, heartbeat), "DEADLINE");
 }
 
 RawQos unusual() {
