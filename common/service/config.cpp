@@ -126,10 +126,6 @@ std::vector<std::string> split_at_dots(const std::string& key) {
 
 }  // namespace
 
-std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {
-  return io::nearest_name(name, candidates);
-}
-
 ConfigBinder::ConfigBinder() = default;
 ConfigBinder::~ConfigBinder() = default;
 
@@ -265,7 +261,7 @@ ConfigBinder::Setting* ConfigBinder::find(const std::string& key) {
 void ConfigBinder::set(const std::string& key, const std::string& yaml_value, const std::string& origin) {
   const Setting* const setting = find(key);
   if (setting == nullptr) {
-    const std::string near = nearest_name(key, keys());
+    const std::string near = io::nearest_name(key, keys());
     throw ConfigError(
         fmt::format("{}: unknown key '{}'{}", origin, io::abridged(key),
                     near.empty() ? ": see --print-config for all keys" : fmt::format(", did you mean '{}'?", near)));

@@ -136,7 +136,4 @@ class ConfigBinder {
 std::vector<std::string> to_command_line(const std::vector<GivenOption>& given, const std::string& section,
                                          const std::vector<std::string>& without = {});
 
-/// The candidate with the smallest edit distance to `name`; empty when none is near.
-std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
-
 }  // namespace rtd::service

@@ -11,6 +11,7 @@
 #include "common/bus/topic_roles.hpp"
 #include "common/camera/source_schemes.hpp"
 #include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/ros2/names.hpp"
@@ -90,7 +91,7 @@ std::string unknown_command(const std::string& name) {
   std::vector<std::string> known = kBuiltIn;
   for (const ExternalCommand& command : commands()) known.emplace_back(command.name);
   for (const std::string& other : other_commands()) known.push_back(other);
-  const std::string near = service::nearest_name(name, known);
+  const std::string near = io::nearest_name(name, known);
   return "'" + io::abridged(name) + "' is not an rtd command" +
          (near.empty() ? "; 'rtd --help' lists all commands" : ", did you mean '" + near + "'?");
 }

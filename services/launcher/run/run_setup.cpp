@@ -14,6 +14,7 @@
 #include "common/camera/open/source_factory.hpp"
 #include "common/io/atomic_file.hpp"
 #include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 #include "common/msg/services.hpp"
 #include "common/process/executable.hpp"
 #include "common/process/out_folder.hpp"
@@ -33,7 +34,7 @@ void check_sections(const std::vector<std::string>& overrides) {
   for (const std::string& assignment : overrides) {
     const std::string section = assignment.substr(0, assignment.find_first_of(".="));
     if (std::ranges::count(sections, section) > 0) continue;
-    const std::string near = service::nearest_name(section, sections);
+    const std::string near = io::nearest_name(section, sections);
     throw ConfigError(fmt::format("--set {}: unknown section '{}'{}", io::abridged(assignment), io::abridged(section),
                                   near.empty() ? "" : fmt::format(", did you mean '{}'?", near)));
   }

@@ -133,10 +133,6 @@ TEST_F(ConfigTest, printed_config_loads_to_the_same_values) {
   EXPECT_EQ(sample_.count, 77);
 }
 
-TEST(NearestName, far_words_are_not_suggested) {
-  EXPECT_EQ(nearest_name("zebra", {"filter.mode"}), "");
-}
-
 /// A command line with the options of Sample.
 class OptionsTest : public ConfigTest {
  protected:

@@ -14,6 +14,7 @@
 #include "common/io/bytes.hpp"
 #include "common/io/input_file.hpp"
 #include "common/io/printable.hpp"
+#include "common/io/text.hpp"
 #include "common/msg/filter_modes.hpp"
 #include "common/service/config.hpp"
 #include "services/evaluation/core/trajectory/integrity.hpp"
@@ -35,7 +36,7 @@ std::size_t indent_of(const std::string& line) {
 }
 
 [[noreturn]] void refuse(const std::string& what, const std::string& word, const std::vector<std::string>& known) {
-  const std::string near = service::nearest_name(word, known);
+  const std::string near = io::nearest_name(word, known);
   std::string all;
   for (const std::string& one : known) all += (all.empty() ? "" : ", ") + one;
   throw service::ConfigError("unknown " + what + " '" + io::abridged(word) + "'" +
