@@ -146,30 +146,6 @@ std::string lower_case(std::string name) {
   return name;
 }
 
-/// What `find` makes of a part of the path, in lower case, the innermost first.
-template <class Find>
-auto in_innermost(const std::filesystem::path& folder, const Find& find) -> decltype(find(std::string())) {
-  const std::vector<std::filesystem::path> parts(folder.begin(), folder.end());
-  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
-    if (auto found = find(lower_case(part->string()))) return found;
-  }
-  return std::nullopt;
-}
-
-/// A camera of config/cameras.
-struct KnownCamera {
-  std::string file;  ///< its name there
-  const std::string& text;
-};
-
-/// The camera that the name of a folder belongs to.
-std::optional<KnownCamera> known_camera(const std::string& name) {
-  if (is_bonn_name(name)) return KnownCamera{"bonn.yaml", bonn_camera_yaml()};
-  const std::optional<int> family = family_in(name);
-  if (!family) return std::nullopt;
-  return KnownCamera{"tum_fr" + std::to_string(*family) + ".yaml", tum_camera_yaml(*family)};
-}
-
 }  // namespace
 
 void apply(const Calibration& calibration, SourceInfo& info) {
@@ -233,18 +209,20 @@ Calibration read_calibration(const std::filesystem::path& file, std::optional<cv
   }
 }
 
-std::optional<int> tum_family(const std::filesystem::path& folder) {
-  return in_innermost(folder, family_in);
-}
-
 bool is_bonn_name(const std::string& folder_name) {
   return folder_name.starts_with("rgbd_bonn_");
 }
 
 std::optional<Calibration> known_calibration(const std::filesystem::path& folder) {
-  const std::optional<KnownCamera> known = in_innermost(std::filesystem::absolute(folder), known_camera);
-  if (!known) return std::nullopt;
-  return parse_calibration(known->text, "config/cameras/" + known->file);
+  const std::filesystem::path path = std::filesystem::absolute(folder);
+  const std::vector<std::filesystem::path> parts(path.begin(), path.end());
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    const std::string name = lower_case(part->string());
+    if (is_bonn_name(name)) return parse_calibration(bonn_camera_yaml(), "config/cameras/bonn.yaml");
+    if (const std::optional<int> family = family_in(name))
+      return parse_calibration(tum_camera_yaml(*family), fmt::format("config/cameras/tum_fr{}.yaml", *family));
+  }
+  return std::nullopt;
 }
 
 Calibration load_calibration(const std::filesystem::path& folder) {

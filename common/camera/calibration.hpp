@@ -62,9 +62,6 @@ Calibration load_calibration(const std::filesystem::path& folder);
 /// The calibration of the camera that the path names; empty when it names none.
 std::optional<Calibration> known_calibration(const std::filesystem::path& folder);
 
-/// 1, 2 or 3 when the path names a TUM camera family, the innermost folder first.
-std::optional<int> tum_family(const std::filesystem::path& folder);
-
 /// Whether the name of a folder is that of a sequence of the Bonn RGB-D Dynamic Dataset: rgbd_bonn_balloon, ...
 bool is_bonn_name(const std::string& folder_name);
 

@@ -8,8 +8,8 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/camera/calibration.hpp"
-#include "common/camera/folder/frame_lists.hpp"
 #include "common/geometry/pose_list.hpp"
+#include "tests/support/tum_lists.hpp"
 
 namespace rtd::test_support {
 namespace {
@@ -43,7 +43,7 @@ std::optional<EvaluationClip> EvaluationClip::find(const std::string& name) {
 EvaluationClip::EvaluationClip(const std::string& directory) : camera_(camera::load_calibration(directory).camera) {
   const geometry::Trajectory poses = read_poses(directory + "/groundtruth.txt");
   std::optional<Eigen::Isometry3d> T_camera0_world;
-  for (const auto& [color, depth] : camera::read_pairs(directory).pairs) {
+  for (const auto& [color, depth] : read_tum_lists(directory).pairs) {
     const Eigen::Isometry3d T = nearest_pose(poses, color.stamp_ns);
     if (!T_camera0_world) T_camera0_world = T.inverse();
     const std::string mask = directory + "/mask/" + std::filesystem::path(color.file).stem().string() + ".png";

@@ -294,17 +294,6 @@ PairList read_two_lists(const fs::path& folder, const std::string& color, const 
   return list;
 }
 
-PairList read_pairs(const fs::path& folder, const ListRules& rules) {
-  std::error_code error;
-  if (!fs::exists(folder, error)) throw SourceError("folder " + folder.string() + " does not exist");
-  if (!fs::is_directory(folder, error)) throw SourceError(folder.string() + " is not a folder");
-  if (fs::exists(folder / "associations.txt", error)) return read_associations(folder, "associations.txt", rules);
-  if (fs::exists(folder / "rgb.txt", error) && fs::exists(folder / "depth.txt", error))
-    return read_two_lists(folder, "rgb.txt", "depth.txt", rules);
-  throw SourceError("folder " + folder.string() +
-                    " is not a TUM sequence: it needs rgb.txt and depth.txt, or associations.txt");
-}
-
 PairList pair_by_names(const std::vector<std::string>& color, const std::vector<std::string>& depth,
                        std::int64_t tolerance_ns) {
   const NamedFrames colors = read_frame_names(color), depths = read_frame_names(depth);

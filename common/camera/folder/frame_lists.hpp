@@ -46,10 +46,6 @@ PairList read_associations(const std::filesystem::path& folder, const std::strin
 PairList read_two_lists(const std::filesystem::path& folder, const std::string& color, const std::string& depth,
                         const ListRules& rules = {});
 
-/// The pairs of a folder with TUM's lists: associations.txt unchanged when there is one, else rgb.txt and depth.txt.
-/// Throws SourceError for a missing folder or list, and as above.
-PairList read_pairs(const std::filesystem::path& folder, const ListRules& rules = {});
-
 /// The pairs of files by their names: of the same number, or, where the names are times (seconds with a point, or
 /// milliseconds, microseconds, nanoseconds since 1970; Redwood's NUMBER-MICROSECONDS), closest within the tolerance; in
 /// their order where the numbers do not fit, but there are as many of both.

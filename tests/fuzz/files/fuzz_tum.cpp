@@ -90,7 +90,7 @@ class Folder {
 };
 
 std::string check_pairs(const std::filesystem::path& folder, Counted& counted) {
-  const PairList list = read_pairs(folder);
+  const PairList list = read_two_lists(folder, "rgb.txt", "depth.txt");
   counted.pairs += list.pairs.size();
   for (std::size_t i = 1; i < list.pairs.size(); ++i)
     if (list.pairs[i].color.stamp_ns <= list.pairs[i - 1].color.stamp_ns) return "colour stamps do not rise";

@@ -127,7 +127,7 @@ void read_truth(const fs::path& file) {
 /// Of a folder whose lists are all this text.
 void read_lists(const fs::path& folder, const std::string& text) {
   for (const char* const name : {"rgb.txt", "depth.txt"}) std::ofstream(folder / name) << text;
-  camera::read_pairs(folder);
+  camera::read_two_lists(folder, "rgb.txt", "depth.txt");
 }
 
 }  // namespace
@@ -157,8 +157,9 @@ std::vector<Case> texts(std::size_t bytes, const fs::path& folder) {
       });
   add(cases, "lists", tables(bytes),
       [file = name("x")](const std::string& text) { read_lists(file("").parent_path(), text); });
-  add(cases, "associations", tables(bytes),
-      [file = name("associations.txt")](const std::string& text) { camera::read_pairs(file(text).parent_path()); });
+  add(cases, "associations", tables(bytes), [file = name("associations.txt")](const std::string& text) {
+    camera::read_associations(file(text).parent_path(), "associations.txt");
+  });
   add(cases, "poses", tables(bytes), [](const std::string& text) { geometry::read_pose_list(text, "input"); });
   add(cases, "truth", tables(bytes), [file = name("truth.csv")](const std::string& text) { read_truth(file(text)); });
   add(cases, "frames", tables(bytes),

@@ -89,14 +89,19 @@ TEST(Calibration, reads_rational_and_fisheye_lenses_and_writes_them_again) {
               ThrowsMessage<SourceError>(HasSubstr("remove p1")));
 }
 
-TEST(TumFamily, is_read_from_the_innermost_folder_that_names_one) {
-  EXPECT_EQ(tum_family("/data/rgbd_dataset_freiburg1_xyz"), 1);
-  EXPECT_EQ(tum_family("/data/fr2_desk"), 2);
-  EXPECT_EQ(tum_family("/data/freiburg1/fr3_walking_xyz"), 3);
-  EXPECT_EQ(tum_family("/data/FR3/seq"), 3);
-  EXPECT_EQ(tum_family("/data/fr12"), std::nullopt);
-  EXPECT_EQ(tum_family("/data/afr1"), std::nullopt);
-  EXPECT_EQ(tum_family("/data/office"), std::nullopt);
+/// 0: of no known camera.
+double known_fx(const char* folder) {
+  const std::optional<Calibration> known = known_calibration(folder);
+  return known ? known->camera.parameters().fx : 0;
+}
+
+TEST(KnownCalibration, is_that_of_the_innermost_folder_that_names_a_family) {
+  constexpr double kFr1 = 517.306408, kFr2 = 520.908620, kFr3 = 535.4;
+  EXPECT_EQ(known_fx("/data/rgbd_dataset_freiburg1_xyz"), kFr1);
+  EXPECT_EQ(known_fx("/data/fr2_desk"), kFr2);
+  EXPECT_EQ(known_fx("/data/freiburg1/fr3_walking_xyz"), kFr3);
+  EXPECT_EQ(known_fx("/data/FR3/seq"), kFr3);
+  for (const char* unknown : {"/data/fr12", "/data/afr1", "/data/office"}) EXPECT_EQ(known_fx(unknown), 0) << unknown;
 }
 
 TEST(LoadCalibration, takes_the_file_first_then_the_family) {
