@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <string>
 
@@ -22,20 +20,13 @@ class RobotFinder {
   RobotFinder(const BusOptions& options, const Topic<T>& topic)
       : RobotFinder(options, topic.name, dds_type_name(MessageTraits<T>::kId)) {}
   RobotFinder(const BusOptions& options, std::string topic, std::string dds_type);
-  ~RobotFinder();
-  RobotFinder(const RobotFinder&) = delete;
-  RobotFinder& operator=(const RobotFinder&) = delete;
 
   /// Those there now; "" is the one without a name.
   std::set<std::string> robots() const;
 
  private:
-  void note(const TopicWriter& writer, WriterChange change);
-
   const std::string topic_, dds_type_;
-  mutable std::mutex mutex_;
-  std::map<std::string, std::set<WriterId>> writers_;
-  std::shared_ptr<RawBus> bus_;
+  const std::shared_ptr<RawBus> bus_;
 };
 
 }  // namespace rtd::bus
