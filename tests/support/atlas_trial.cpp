@@ -232,7 +232,12 @@ TrialResult run_atlas_trial(const std::vector<TrialRobot>& robots, const Offline
   std::vector<std::future<Walked>> walking;
   for (std::size_t i = 0; i < robots.size(); ++i)
     walking.push_back(std::async(together ? std::launch::async : std::launch::deferred, [&, i] {
-      return walk(robots[i], i, together ? &turns : nullptr, options, atlas, result.robots[i]);
+      try {
+        return walk(robots[i], i, together ? &turns : nullptr, options, atlas, result.robots[i]);
+      } catch (...) {
+        turns.leave(i);  // or the others wait for ever
+        throw;
+      }
     }));
   std::vector<Walked> walks;
   for (std::future<Walked>& walk : walking) walks.push_back(walk.get());

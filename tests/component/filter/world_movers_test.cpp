@@ -37,14 +37,14 @@ class Truth {
     Eigen::AlignedBox3d extent;
     const auto add = [&](const Eigen::Vector3f& p) { extent.extend(T_first_world_ * p.cast<double>()); };
     for (const synthetic::Face& face : geometry.faces) {
-      if (face.object != object) continue;
+      if (face.surface.object != object) continue;
       for (const int corner : {0, 1, 2, 3}) {
         add(face.origin + face.axis_s * (face.width_m * static_cast<float>(corner & 1)) +
             face.axis_t * (face.height_m * static_cast<float>(corner >> 1)));
       }
     }
     for (const synthetic::Ellipsoid& body : geometry.ellipsoids) {
-      if (body.object != object) continue;
+      if (body.surface.object != object) continue;
       for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0F, 1.0F})
           add(body.T_world_body * (side * body.semi_axes_m[axis] * Eigen::Vector3f::Unit(axis)));
@@ -75,7 +75,7 @@ class Truth {
     const synthetic::Geometry geometry = scene_.geometry_at(t_s);
     const synthetic::Ellipsoid* largest = nullptr;
     for (const synthetic::Ellipsoid& body : geometry.ellipsoids) {
-      if (body.object != object) continue;
+      if (body.surface.object != object) continue;
       if (largest == nullptr || body.semi_axes_m.prod() > largest->semi_axes_m.prod()) largest = &body;
     }
     if (largest == nullptr) return extent(object, t_s).center();

@@ -160,9 +160,9 @@ constexpr double kMostlyVisible = 0.7;                  ///< share of what the i
 int unhidden_px(synthetic::Renderer& renderer, const synthetic::Scene& scene, double t_s, int object) {
   synthetic::Geometry geometry = scene.geometry_at(t_s);
   geometry.faces.clear();
-  std::erase_if(geometry.ellipsoids, [&](const synthetic::Ellipsoid& part) { return part.object != object; });
-  const synthetic::Rendering alone = renderer.render(geometry, scene.textures(), scene.T_world_camera(t_s));
-  return alone.objects.empty() ? 0 : alone.objects.front().visible_px;
+  std::erase_if(geometry.ellipsoids, [&](const synthetic::Ellipsoid& part) { return part.surface.object != object; });
+  const auto alone = find_objects(renderer.render(geometry, scene.textures(), scene.T_world_camera(t_s)));
+  return alone.empty() ? 0 : alone.front().visible_px;
 }
 
 /// The people of a clip, and what the detector finds. Those that are small or hidden count neither way.
