@@ -270,8 +270,11 @@ void ViewerService::find_robots() {
 }
 
 void ViewerService::apply_options() {
-  const PageOptions later = PageOptions::for_later(service::monotonic_ns());
-  for (auto& [name, feed] : robots_) feed->set_options(page_.options(feed->mirror().index()).value_or(later));
+  const std::int64_t now_ns = service::monotonic_ns();
+  for (auto& [name, feed] : robots_) {
+    const RobotMirror& mirror = feed->mirror();
+    feed->set_options(page_.options(mirror.index()).value_or(PageOptions::for_later(now_ns, mirror.has_image())));
+  }
 }
 
 void ViewerService::refresh(std::int64_t now) {

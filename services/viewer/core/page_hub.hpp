@@ -25,11 +25,12 @@ struct PageOptions {
   }
   bool operator==(const PageOptions&) const = default;
   static PageOptions nothing() { return {false, false, false, false, false, false}; }
-  /// No page is open: what one that opens after the end could not get any more, and for a second in five the image.
-  static PageOptions for_later(std::int64_t now_ns) {
+  /// No page is open: what one that opens after the end could not get any more, and the image until there is one, then
+  /// for a second in five.
+  static PageOptions for_later(std::int64_t now_ns, bool has_image) {
     PageOptions later = nothing();
     later.points = later.dense = later.plan = true;
-    later.image = now_ns / 1'000'000'000 % 5 == 0;
+    later.image = !has_image || now_ns / 1'000'000'000 % 5 == 0;
     return later;
   }
 };

@@ -119,6 +119,7 @@ class RobotMirror {
   const std::deque<Message>& recent_tracking() const { return recent_tracking_; }
   /// The newest image that the filter has looked at, with its overlays; without a filter, the newest one.
   std::optional<AnnotatedImage> newest_image() const;
+  bool has_image() const { return !images_.empty(); }
   const TruthTrack& truth() const { return truth_; }
   std::vector<page::ServiceLine> services(std::int64_t now_ns) const;
   /// Dense points, 9 bytes each as on the wire, and how to read them. The first n are spread over all.

@@ -106,9 +106,10 @@ TEST_F(PageSessionTest, a_late_page_gets_the_poses_of_the_last_minute_first) {
 
 TEST_F(PageSessionTest, without_a_page_what_a_late_one_needs_is_read) {
   EXPECT_FALSE(hub.options(0));
-  const PageOptions later = PageOptions::for_later(5 * kSecond);
+  const PageOptions later = PageOptions::for_later(5 * kSecond, true);
   EXPECT_TRUE(later.points && later.dense && later.plan && later.image);
-  EXPECT_FALSE(later.mask || later.features || later.people || PageOptions::for_later(6 * kSecond).image);
+  EXPECT_FALSE(later.mask || later.features || later.people || PageOptions::for_later(6 * kSecond, true).image);
+  EXPECT_TRUE(PageOptions::for_later(6 * kSecond, false).image) << "a short run has one as well";
 }
 
 TEST_F(PageSessionTest, a_late_page_gets_the_whole_state_and_then_changes) {
