@@ -10,8 +10,41 @@
 
 #include "tests/support/atlas_trial.hpp"
 
+namespace {
+
+using namespace rtd::test_support;
+
+void print(const ScaleResult& result, int robots, int seconds) {
+  std::cout << fmt::format(
+      "{} robots, {} s: {} keyframes sent, {} kept, CPU {:.0f} s, p99 {:.1f} ms, longest {:.0f} ms, peak {:.0f} MB{}\n",
+      robots, seconds, result.keyframes, result.kept, result.cpu_s, result.p99_ms, result.longest_ms, result.peak_mb,
+      result.all_met ? ", all met" : ", NOT ALL MET");
+}
+
+void print(const TrialResult& result) {
+  double alone_m = 0, live_m = 0;  // means over the robots
+  for (const TrialResult::Robot& robot : result.robots) {
+    alone_m += robot.ate_alone_m / static_cast<double>(result.robots.size());
+    live_m += robot.live_alone_m / static_cast<double>(result.robots.size());
+    std::cout << fmt::format(
+        "{}: {} meetings {} keyframes {} ate alone {:.4f} (live {:.4f}) m, joint {:.4f} m, {:.0f} kB/s, first pose "
+        "after {:.2f} s, {:.4f} m wrong; {:.1f} ms a keyframe, {:.1f} ms a correction\n",
+        robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
+        robot.live_alone_m, robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m,
+        robot.add_ms, robot.straighten_ms);
+  }
+  const rtd::atlas::AtlasCounters& counters = result.counters;
+  std::cout << fmt::format(
+      "joint ate {:.4f} m, {:.2f} of the mean alone; live {:.4f} m, {:.2f}; {} keyframes met, {} implausible, {} "
+      "alike, {} meetings, {} refused, {} corrections, {} gave way\n",
+      result.ate_joint_m, result.ate_joint_m / alone_m, result.live_joint_m, result.live_joint_m / live_m, counters.met,
+      counters.implausible, counters.alike, counters.meetings, counters.refused, counters.corrections,
+      counters.given_way);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace rtd::test_support;
   OfflineOptions options;
   std::vector<std::string> walks;
   CLI::App app{"Robots that walk through sources one after the other, and the joint map of them", "rtd_offline_atlas"};
@@ -41,34 +74,10 @@ int main(int argc, char** argv) {
   try {
     if (robots_at_once > 0) {
       options.source = robots.front().source;
-      const ScaleResult result = run_scale_trial(options, robots_at_once, seconds, config);
-      std::cout << fmt::format(
-          "{} robots, {} s: {} keyframes sent, {} kept, CPU {:.0f} s, p99 {:.1f} ms, longest {:.0f} ms, peak {:.0f} "
-          "MB{}\n",
-          robots_at_once, seconds, result.keyframes, result.kept, result.cpu_s, result.p99_ms, result.longest_ms,
-          result.peak_mb, result.all_met ? ", all met" : ", NOT ALL MET");
-      return 0;
+      print(run_scale_trial(options, robots_at_once, seconds, config), robots_at_once, seconds);
+    } else {
+      print(run_atlas_trial(robots, options, config, together));
     }
-    const TrialResult result = run_atlas_trial(robots, options, config, together);
-    double alone_m = 0, live_m = 0;  // means over the robots
-    for (const TrialResult::Robot& robot : result.robots) {
-      alone_m += robot.ate_alone_m / static_cast<double>(robots.size());
-      live_m += robot.live_alone_m / static_cast<double>(robots.size());
-      std::cout << fmt::format(
-          "{}: {} meetings {} keyframes {} ate alone {:.4f} (live {:.4f}) m, joint {:.4f} m, {:.0f} kB/s, first pose "
-          "after {:.2f} s, "
-          "{:.4f} m wrong; {:.1f} ms a keyframe, {:.1f} ms a correction\n",
-          robot.name, robot.met ? "met" : "NOT MET", robot.meetings, robot.keyframes, robot.ate_alone_m,
-          robot.live_alone_m, robot.ate_joint_m, robot.kilobytes_per_s, robot.first_pose_s, robot.first_pose_error_m,
-          robot.add_ms, robot.straighten_ms);
-    }
-    std::cout << fmt::format(
-        "joint ate {:.4f} m, {:.2f} of the mean alone; live {:.4f} m, {:.2f}; {} keyframes met, {} implausible, {} "
-        "alike, {} meetings, {} refused, {} corrections, "
-        "{} gave way\n",
-        result.ate_joint_m, result.ate_joint_m / alone_m, result.live_joint_m, result.live_joint_m / live_m,
-        result.counters.met, result.counters.implausible, result.counters.alike, result.counters.meetings,
-        result.counters.refused, result.counters.corrections, result.counters.given_way);
   } catch (const std::exception& error) {
     std::cerr << "rtd_offline_atlas: " << error.what() << '\n';
     return 1;

@@ -52,7 +52,10 @@ void sigmoid(const float* in, float* out, std::size_t count) {
   }
 }
 
-FastSigmoidScope::FastSigmoidScope() {
+/// Of OpenCV's layer types.
+static std::mutex registry;
+
+FastSigmoidScope::FastSigmoidScope() : registry_(registry) {
   cv::dnn::LayerFactory::registerLayer("Sigmoid", SigmoidLayer::create);
 }
 FastSigmoidScope::~FastSigmoidScope() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <mutex>
 
 namespace rtd::detector {
 
@@ -10,14 +11,17 @@ namespace rtd::detector {
 /// a seventh of the time of YOLOX-nano. `out` may be `in`.
 void sigmoid(const float* in, float* out, std::size_t count);
 
-/// While one exists, networks that are loaded get the vectorised Sigmoid layer. Not thread-safe: the registry of layer
-/// types is the process's.
+/// While one exists, networks that are loaded get the vectorised Sigmoid layer. The registry of layer types is the
+/// process's: another thread waits until it has gone.
 class FastSigmoidScope {
  public:
   FastSigmoidScope();
   ~FastSigmoidScope();
   FastSigmoidScope(const FastSigmoidScope&) = delete;
   FastSigmoidScope& operator=(const FastSigmoidScope&) = delete;
+
+ private:
+  std::unique_lock<std::mutex> registry_;
 };
 
 }  // namespace rtd::detector

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <future>
+
 #include <cmath>
 #include <limits>
 #include <opencv2/core.hpp>
@@ -87,6 +89,15 @@ TEST(FastSigmoid, is_the_sigmoid) {
     const double expected = 1.0 / (1.0 + std::exp(-static_cast<double>(x[i])));
     EXPECT_NEAR(y[i], expected, 1e-6 * expected + 1e-37) << x[i];
   }
+}
+
+TEST(FastSigmoid, networks_may_be_loaded_in_several_threads) {
+  const auto load = [] {
+    for (int i = 0; i < 1000; ++i) const FastSigmoidScope scope;
+  };
+  auto other = std::async(std::launch::async, load);
+  EXPECT_NO_THROW(load());
+  EXPECT_NO_THROW(other.get());
 }
 
 TEST(FastSigmoid, works_in_place_and_at_the_ends) {
